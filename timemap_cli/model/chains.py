@@ -1,0 +1,66 @@
+"""The best states of many circles of angle bins, most of which need no search.
+
+Angle bins with one state do not couple what lies on either side of them, so the rows that have a choice fall into short
+chains. Scores of pairs are never above 0: where each row's best state by itself costs nothing beside its neighbours',
+that is the optimum. Only the chains in conflict are searched, all of them as one circle joined by links that cost nothing.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model.closed_path import IMPOSSIBLE, best_closed_path
+from timemap_cli.model.vote import Scores
+
+Ints = npt.NDArray[np.int64]
+
+
+def best_states(scores: Scores, rows: Ints, angle_bins: int) -> Ints:
+    """States (rows,) of the paths with the best score, for the circles of all nodes at once.
+
+    `rows` holds node * angle_bins + angle bin of every row, ascending.
+    """
+    best = scores.unary.argmax(axis=1)
+    if not len(scores.edges):
+        return best
+    here, there = scores.edges.T
+    cost = scores.pairwise[np.arange(len(here)), best[here], best[there]]
+    if not cost.any():
+        return best
+    link = np.full(len(rows), -1)  # the edge that leads on from a row
+    link[here] = np.arange(len(here))
+    conflict = here[cost < 0]
+    for chain in _chains(rows, link, conflict, angle_bins):
+        best[chain] = _search(scores, chain, link)
+    return best
+
+
+def _chains(rows: Ints, link: Ints, conflict: Ints, angle_bins: int) -> list[Ints]:
+    """Rows of the chains in conflict, in order: all open chains as one array, and each closed circle as its own."""
+    node, angle_bin = np.divmod(rows, angle_bins)
+    open_end = link < 0
+    breaks = np.bincount(node[open_end], minlength=int(node[-1]) + 1)
+    # An open circle is turned so that it begins after a break: what lies before its first break goes to its end.
+    before_break = np.cumsum(open_end) - open_end
+    first_row = np.searchsorted(node, node)
+    wraps = (before_break == before_break[first_row]) & (breaks[node] > 0)
+    wraps &= link[np.searchsorted(node, node, side="right") - 1] >= 0
+    order = np.argsort((node * 2 + wraps) * angle_bins + angle_bin, kind="stable")
+    chain = np.empty(len(rows), np.int64)
+    chain[order] = np.cumsum(np.append(True, open_end[order][:-1] | (np.diff(node[order]) > 0))) - 1
+    wanted = np.zeros(int(chain.max()) + 1, np.bool_)
+    wanted[chain[conflict]] = True
+    ordered = order[wanted[chain[order]]]
+    closed = breaks[node[ordered]] == 0
+    circles = [ordered[closed & (node[ordered] == n)] for n in np.unique(node[ordered[closed]])]
+    return [part for part in (ordered[~closed], *circles) if len(part)]
+
+
+def _search(scores: Scores, chain: Ints, link: Ints) -> Ints:
+    """Best states (n,) of rows in order, each linked to the next only where they are neighbours."""
+    exists = scores.unary[chain] > IMPOSSIBLE
+    size = int(exists.sum(axis=1).max())
+    pairwise = np.zeros((len(chain), size, size), np.int64)
+    edge = link[chain]
+    linked = np.flatnonzero(edge >= 0)
+    pairwise[linked] = scores.pairwise[edge[linked], :size, :size]
+    return best_closed_path(scores.unary[chain, :size], pairwise)[0]

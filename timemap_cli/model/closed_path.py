@@ -1,0 +1,53 @@
+"""The best closed path round the circle of angle bins: exact, for all start states at once.
+
+A path's score is the sum of its states' unary and its neighbours' pairwise scores. The matrices of best scores from one
+angle bin to another multiply associatively (with max for +, + for *), so neighbours are joined two by two: the work is the same as a
+walk round the circle, in log2 as many steps. Scores are integers, so the order of sums decides nothing.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+Ints = npt.NDArray[np.int64]
+
+SCALE = 1 << 20  # integer scores per unit of score
+IMPOSSIBLE = -(1 << 42)  # below every possible score of a circle, and many of them still add up
+
+
+def best_closed_path(unary: Ints, pairwise: Ints) -> tuple[Ints, int]:
+    """States x (n,) that maximise sum over i of unary[i, x_i] + pairwise[i, x_i, x_i+1], the last before the first.
+
+    `unary` is (n, states), `pairwise` (n, states, states); states that do not exist score IMPOSSIBLE. Ties go to
+    the lower state. Returns the states and the score.
+    """
+    matrices = unary[:, :, None] + pairwise
+    middles: list[npt.NDArray[np.int64]] = []
+    while len(matrices) > 1:
+        pairs = len(matrices) // 2
+        joined, middle = _join(matrices[0 : 2 * pairs : 2], matrices[1 : 2 * pairs : 2])
+        matrices = np.concatenate((joined, matrices[2 * pairs :]))
+        middles.append(middle)
+    around = np.diagonal(matrices[0])
+    best = int(around.argmax())
+    return _unfold(best, middles), int(around[best])
+
+
+def _join(first: Ints, second: Ints) -> tuple[Ints, Ints]:
+    """Best scores (k, states, states) over two stretches in a row, and the state in the middle that gives them."""
+    total = first[:, :, :, None] + second[:, None, :, :]
+    middle = total.argmax(axis=2)
+    return np.take_along_axis(total, middle[:, :, None, :], axis=2)[:, :, 0, :], middle
+
+
+def _unfold(best: int, middles: list[Ints]) -> Ints:
+    """Starting states of all stretches, from the whole circle's down to the single angle bins'."""
+    path = np.array([best])
+    for middle in reversed(middles):
+        pairs = len(middle)
+        stop = np.roll(path, -1)
+        finer = np.empty(len(path) + pairs, np.int64)
+        finer[0 : 2 * pairs : 2] = path[:pairs]
+        finer[1 : 2 * pairs : 2] = middle[np.arange(pairs), path[:pairs], stop[:pairs]]
+        finer[2 * pairs :] = path[pairs:]
+        path = finer
+    return path

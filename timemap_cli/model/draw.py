@@ -1,0 +1,111 @@
+"""Which scans a level takes: one at a random place of every 1/q (stratified), so that the half-life is exact.
+
+A coin for each scan would cost a tenth of the half-life. The decision falls for a scan as a whole, so that
+neighbouring angle bins stay together.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model import chance
+from timemap_cli.model.levels import LONGEST_STEP, Level
+
+Ints = npt.NDArray[np.int64]
+
+_ONE = 1 << 32  # shares are summed as whole 2^-32, so that a sum does not depend on how scans come in blocks
+_NEVER = np.iinfo(np.int64).min
+
+
+@dataclass(frozen=True, slots=True)
+class Groups:
+    """The scans of a block, ordered by node and within a node by time."""
+
+    order: Ints  # (n,) index of the scan in the block
+    nodes: Ints  # (n,) its node, ascending
+    starts: Ints  # (groups,) where a node's scans begin
+    ranks: Ints  # (n,) 0 for the node's first scan in the block
+
+    @classmethod
+    def of(cls, nodes: Ints) -> "Groups":
+        """Group scans of the given nodes (n,), which are in time order."""
+        order = np.argsort(nodes, kind="stable")
+        ordered = nodes[order]
+        starts = np.flatnonzero(np.diff(ordered, prepend=-1))
+        lengths = np.diff(starts, append=len(nodes))
+        return cls(order, ordered, starts, np.arange(len(nodes)) - np.repeat(starts, lengths))
+
+    @property
+    def distinct(self) -> Ints:
+        """The nodes, ascending."""
+        return self.nodes[self.starts]
+
+    def running_sums(self, values: npt.NDArray[np.generic], totals: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+        """Sums (n, ...) of each node's values up to and with each scan, on top of its total so far.
+
+        `totals` (nodes, ...) is brought up to date.
+        """
+        sums = np.cumsum(values, axis=0, dtype=totals.dtype)
+        if not len(sums):
+            return sums
+        base = totals[self.distinct]
+        base[1:] -= sums[self.starts[1:] - 1]  # unsigned arithmetic may pass below 0 and comes back
+        sums += np.repeat(base, np.diff(self.starts, append=len(sums)), axis=0)
+        totals[self.nodes] = sums  # in time order: the last one stays
+        return sums
+
+
+class Draw:
+    """The state of the draw for every node at one level."""
+
+    def __init__(self, level: Level) -> None:
+        self._level = level
+        self._reached = np.zeros(0, np.int64)  # scans that reached the level
+        self._sum = np.zeros(0, np.int64)  # of their shares [2^-32]
+        self._next = np.zeros(0, np.int64)  # first turn in which no scan was taken yet
+        self._stamp = np.zeros(0, np.int64)  # [ns] the newest scan that reached the level
+
+    def add_nodes(self, nodes: int) -> None:
+        """Make room for so many nodes in all."""
+        for name, empty in (("_reached", 0), ("_sum", 0), ("_next", 0), ("_stamp", _NEVER)):
+            array = getattr(self, name)
+            setattr(self, name, np.append(array, np.full(nodes - len(array), empty, np.int64)))
+
+    def taken(self, groups: Groups, stamps_ns: Ints, keys: chance.Keys) -> npt.NDArray[np.bool_]:
+        """Which scans (n,) the level takes; `stamps_ns` is in the groups' order, `keys` per node."""
+        share = self._shares(groups, stamps_ns)
+        start = groups.running_sums(share, self._sum) - share
+        turn = start >> 32
+        pick = (turn << 32) + (chance.mixed(keys[groups.nodes], ~turn) >> np.uint64(32)).astype(np.int64)
+        candidate = start + share > pick
+        # the first candidate of each turn is taken; within a turn, what follows a candidate is one too
+        first = groups.ranks == 0
+        again = np.zeros(len(turn), np.bool_)
+        again[1:] = candidate[:-1] & (turn[1:] == turn[:-1])
+        again[first] = self._next[groups.distinct] > turn[first]
+        taken = candidate & ~again
+        np.maximum.at(self._next, groups.nodes[taken], turn[taken] + 1)
+        return np.asarray(taken)
+
+    def _shares(self, groups: Groups, stamps_ns: Ints) -> Ints:
+        """Share of a turn that each scan fills [2^-32]: more than its due while the memory is young.
+
+        Else four scans would decide a memory of a hundred places.
+        """
+        reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
+        young = np.minimum(1.0, self._level.window / reached)
+        return np.rint(np.maximum(young, self._due(groups, stamps_ns)) * _ONE).astype(np.int64)
+
+    def _due(self, groups: Groups, stamps_ns: Ints) -> npt.NDArray[np.float64] | float:
+        if not self._level.in_seconds:
+            return self._level.share_taken(1.0)
+        before = np.roll(stamps_ns, 1)
+        first = groups.ranks == 0
+        before[first] = self._stamp[groups.distinct]
+        self._stamp[groups.nodes] = stamps_ns
+        steps = [
+            min((now - then) * 1e-9, LONGEST_STEP) if then != _NEVER else 0.0
+            for now, then in zip(stamps_ns.tolist(), before.tolist(), strict=True)
+        ]
+        return np.array([self._level.share_taken(step) for step in steps])

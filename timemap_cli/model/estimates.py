@@ -1,0 +1,22 @@
+"""What one node and level hold to be there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """The most probable consistent virtual scan of one node and level.
+
+    Angle bin i covers the bearings [i * d, (i + 1) * d) with d = 2 * pi / angle_bins.
+    """
+
+    node: int  # number of the node
+    level: str
+    stamp_ns: int  # header stamp of the newest scan that the node holds
+    ranges: npt.NDArray[np.float32]  # (angle_bins,) [m]; +inf clear, NaN unknown
+    support: npt.NDArray[np.float32]  # (angle_bins,) share of the level's window that agrees, 0..1
+    plausibility: npt.NDArray[np.float32]  # (angle_bins,) share that does not contradict, 0..1
+    samples: npt.NDArray[np.uint16]  # (angle_bins,) remembered ranges

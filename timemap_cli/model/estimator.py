@@ -1,0 +1,73 @@
+"""The most probable consistent scan of a node and level, from what it remembers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model.chains import best_states
+from timemap_cli.model.memory import Remembered
+from timemap_cli.model.states import States, states_from_data
+from timemap_cli.model.virtual_scan import UNSEEN, Ranges
+from timemap_cli.model.vote import shares, vote
+
+Ints = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated:
+    """Estimates of m nodes at one level."""
+
+    ranges: Ranges  # (m, angle_bins) [mm], measured ones or CLEAR or UNSEEN
+    support: Floats  # (m, angle_bins) share of the window that agrees
+    plausibility: Floats  # (m, angle_bins) share of the window that does not contradict
+    samples: Ints  # (m, angle_bins) remembered ranges
+
+
+Estimator = Callable[[Remembered], Estimated]
+
+
+def estimate(memory: Remembered, state_width: float) -> Estimated:
+    """Estimate m nodes of one level; `state_width` [m] as in `states_from_data`."""
+    angle_bins = memory.samples.shape[1]
+    states = states_from_data(memory, state_width)
+    share = shares(memory, states)
+    best = best_states(vote(memory, states, share), states.rows, angle_bins)
+    support = share.known.copy()
+    support[states.rows] = share.states[np.arange(len(best)), best]
+    plausibility = 1 - (share.known - support)
+    shape = memory.n_samples.shape
+    return Estimated(
+        _measured(memory, states, best).reshape(shape),
+        support.reshape(shape),
+        plausibility.reshape(shape),
+        memory.n_samples,
+    )
+
+
+def _measured(memory: Remembered, states: States, best: Ints) -> Ranges:
+    """The lower median of each angle bin's samples in its state (m * angle_bins,) [mm].
+
+    Where the samples of the state are gone, its pairs' ranges stand in for them.
+    """
+    low = states.starts[np.arange(len(best)), best]
+    padded = np.append(states.starts, np.full((len(best), 1), UNSEEN, np.uint16), axis=1)
+    high = padded[np.arange(len(best)), best + 1]
+    samples = np.sort(memory.samples.reshape(-1, memory.window), axis=1)
+    middle, none = _lower_median(samples, memory.n_samples.reshape(-1), states.rows, low, high)
+    known, _ = _lower_median(states.known, states.n_known, states.rows, low, high)
+    return np.where(none, known, middle)
+
+
+def _lower_median(
+    ordered: Ranges, count: Ints, rows: Ints, low: Ranges, high: Ranges
+) -> tuple[Ranges, npt.NDArray[np.bool_]]:
+    """Lower median of the first `count` values of each row, in `rows` of those in [low, high); and where are none."""
+    begin, end = np.zeros_like(count), count.copy()
+    some = ordered[rows]
+    begin[rows] = (some < low[:, None]).sum(axis=1)
+    end[rows] = (some < high[:, None]).sum(axis=1)
+    middle = np.maximum(begin + end - 1, 0) // 2
+    return ordered[np.arange(len(ordered)), middle], end == begin

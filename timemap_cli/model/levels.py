@@ -1,0 +1,25 @@
+"""How fast a level forgets (paper, sec. 3), and what a half-life means."""
+
+import math
+from dataclasses import dataclass
+
+LONGEST_STEP = 10.0  # [s] of observed time between two scans: a week's absence does not wipe the memory
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """One time scale of memory: a window of samples, and the half-life after which half of it is replaced.
+
+    The half-life counts scans of the node that reached the level, or seconds in which the node was observed.
+    A window of N samples of which one scan replaces the share u = 1 - exp(-lambda), lambda = ln 2 / half-life,
+    takes a scan with probability N * u.
+    """
+
+    name: str
+    window: int  # samples per angle bin
+    half_life: float  # [scans] or [s]
+    in_seconds: bool = False
+
+    def share_taken(self, step: float) -> float:
+        """Probability with which a scan that stands for `step` scans or seconds enters the memory, at most 1."""
+        return min(1.0, self.window * -math.expm1(-math.log(2) / self.half_life * step))

@@ -1,0 +1,136 @@
+"""One level's memory of all nodes: bounded random samples of ranges, and of which ranges stood side by side.
+
+Reading of the paper (sec. 3 and 4): samples and pairs are two bounded sets per angle bin. A new sample replaces a random
+sample, a new pair a random pair, once a set is full, and nothing else evicts.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model import chance
+from timemap_cli.model.draw import Draw, Groups
+from timemap_cli.model.levels import Level
+from timemap_cli.model.nodes import Node
+from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
+
+Ints = npt.NDArray[np.int64]
+Counts = npt.NDArray[np.uint32]
+
+_SPARE_NODES = 8  # room made at a time
+
+
+@dataclass(frozen=True, slots=True)
+class Remembered:
+    """The memory of m nodes as the estimate reads it; empty places are UNSEEN."""
+
+    samples: Ranges  # (m, angle_bins, window) [mm]
+    ages: Counts  # (m, angle_bins, window) scans taken since, that did not see the angle bin
+    left: Ranges  # (m, angle_bins, window) [mm] a pair's range in this angle bin ...
+    right: Ranges  # (m, angle_bins, window) [mm] ... and in the next
+    n_samples: Ints  # (m, angle_bins)
+    n_pairs: Ints  # (m, angle_bins)
+    taken: Ints  # (m,) scans that the memory took
+    stamps_ns: Ints  # (m,) header stamp of the newest of them
+    window: int
+
+
+class Memory:
+    """Samples and pairs of every node at one level. Grows with the nodes, never with the scans."""
+
+    def __init__(self, level: Level, angle_bins: int, seed: int) -> None:
+        self.level = level
+        self._seed = seed
+        self._draw = Draw(level)
+        self._nodes = 0
+        self._keys = np.zeros(0, np.uint64)  # per node
+        self._taken = np.zeros(0, np.int64)  # per node: scans that the memory took
+        self._stamps_ns = np.zeros(0, np.int64)  # per node: the newest of them
+        self._n_samples = np.zeros((0, angle_bins), np.uint32)
+        self._n_pairs = np.zeros((0, angle_bins), np.uint32)
+        self._missed = np.zeros((0, angle_bins), np.uint32)  # scans taken that did not see the angle bin
+        self._samples = np.zeros((0, angle_bins, level.window), np.uint16)
+        self._missed_then = np.zeros((0, angle_bins, level.window), np.uint32)  # _missed when a sample came
+        self._left = np.zeros((0, angle_bins, level.window), np.uint16)
+        self._right = np.zeros((0, angle_bins, level.window), np.uint16)
+
+    def add_nodes(self, nodes: Sequence[Node]) -> None:
+        """Make room for the nodes that are new at the end of the list."""
+        keys = [chance.key(self._seed, node, self.level.name) for node in nodes[self._nodes :]]
+        self._keys = np.append(self._keys, np.array(keys, np.uint64))
+        self._draw.add_nodes(len(nodes))
+        self._nodes = len(nodes)
+        room = len(self._taken)
+        if room >= self._nodes:
+            return
+        counts = (self._n_samples, self._n_pairs, self._missed, self._missed_then)
+        for array in (self._taken, self._stamps_ns, *counts):
+            array.resize((self._nodes + _SPARE_NODES, *array.shape[1:]), refcheck=False)
+        for store in (self._samples, self._left, self._right):
+            store.resize((self._nodes + _SPARE_NODES, *store.shape[1:]), refcheck=False)
+            store[room:] = UNSEEN
+
+    def remember(self, nodes: Ints, stamps_ns: Ints, ranges: Ranges) -> Ints:
+        """Learn n virtual scans (n, angle_bins) of their nodes (n,), in stamp order.
+
+        Returns the numbers of the nodes whose memory changed, ascending.
+        """
+        groups = Groups.of(nodes)
+        rows = groups.order[self._draw.taken(groups, stamps_ns[groups.order], self._keys)]
+        groups = Groups.of(nodes[rows])
+        node, ranges = groups.nodes, ranges[rows]
+        count = groups.ranks + 1 + self._taken[node]
+        random = chance.mixed(chance.mixed(self._keys[node], count)[:, None], np.arange(ranges.shape[1]))
+        seen = ranges != UNSEEN
+        self._store_samples(groups, ranges, seen, random)
+        self._store_pairs(groups, ranges, seen, random << np.uint64(32))
+        self._taken[node] = count  # ascending within a node: the last one stays
+        self._stamps_ns[node] = stamps_ns[rows]
+        return groups.distinct
+
+    def _store_samples(self, groups: Groups, ranges: Ranges, seen: Bools, random: chance.Keys) -> None:
+        missed = groups.running_sums(~seen, self._missed)
+        chosen = np.flatnonzero(seen)
+        places = self._places(groups, seen, chosen, self._n_samples, random)
+        self._samples.reshape(-1)[places] = ranges.take(chosen)
+        self._missed_then.reshape(-1)[places] = missed.take(chosen)
+
+    def _store_pairs(self, groups: Groups, ranges: Ranges, seen: Bools, random: chance.Keys) -> None:
+        both = seen & np.roll(seen, -1, axis=1)
+        chosen = np.flatnonzero(both)
+        places = self._places(groups, both, chosen, self._n_pairs, random)
+        self._left.reshape(-1)[places] = ranges.take(chosen)
+        self._right.reshape(-1)[places] = np.roll(ranges, -1, axis=1).take(chosen)
+
+    def _places(self, groups: Groups, seen: Bools, chosen: Ints, count: Counts, random: chance.Keys) -> Ints:
+        """Flat index of the place that each chosen value takes: the next empty one, else a random one.
+
+        Later scans come later, so where two take one place, the later stays.
+        """
+        window = self.level.window
+        place = groups.running_sums(seen, count).take(chosen).astype(np.int64)  # 1 for the first value ever
+        place -= 1
+        full = np.flatnonzero(place >= window)
+        place[full] = chance.below(random.take(chosen.take(full)), window)
+        np.minimum(count, window, out=count)
+        angle_bins = seen.shape[1]
+        row_start = np.repeat((groups.nodes * angle_bins * window), angle_bins)
+        row_start.reshape(-1, angle_bins)[:] += np.arange(angle_bins) * window
+        place += row_start.take(chosen)
+        return place
+
+    def recall(self, nodes: Ints) -> Remembered:
+        """Copy of the memory of m nodes."""
+        return Remembered(
+            self._samples[nodes],
+            self._missed[nodes][:, :, None] - self._missed_then[nodes],
+            self._left[nodes],
+            self._right[nodes],
+            self._n_samples[nodes].astype(np.int64),
+            self._n_pairs[nodes].astype(np.int64),
+            self._taken[nodes],
+            self._stamps_ns[nodes],
+            self.level.window,
+        )

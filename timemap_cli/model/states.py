@@ -1,0 +1,136 @@
+"""Which remembered ranges of an angle bin are the same surface: states found in the data, without fixed borders.
+
+Fixed range bins split a surface that stands on their border in two and halve its weight; see docs/method.md.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model.memory import Remembered
+from timemap_cli.model.virtual_scan import CLEAR, UNSEEN, Ranges
+
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+Stretched = npt.NDArray[np.int32]
+
+MAX_STATES = 24  # of one angle bin; on real recordings at most 20, the 99th percentile at most 10
+STRETCH_FROM = 2.5  # [m] beyond, surfaces may be farther apart in proportion to their range
+_UNIT = 1e-4  # [m] of the stretched scale
+_CLEAR_PLACE, _UNSEEN_PLACE = 1 << 22, 1 << 23  # on that scale, beyond every range
+
+
+@dataclass(frozen=True, slots=True)
+class States:
+    """The angle bins of m nodes that may show more than one thing.
+
+    State i of a row holds the ranges from starts[i] up to but without starts[i + 1].
+    """
+
+    rows: Ints  # (rows,) node * angle_bins + angle bin, ascending
+    starts: Ranges  # (rows, states) [mm] ascending, the first 0, unused ones UNSEEN
+    known: Ranges  # (m * angle_bins, 3 * window) [mm] all ranges known in any angle bin, ascending
+    n_known: Ints  # (m * angle_bins,) how many
+
+    @property
+    def exists(self) -> Bools:
+        """(rows, states) which states there are."""
+        return self.starts < UNSEEN
+
+    def labels(self, values: Ranges, rows: Ints | slice = slice(None)) -> npt.NDArray[np.int64]:
+        """Number of the state of each value (rows, k); UNSEEN gives the last number."""
+        starts = self.starts[rows]
+        label = np.zeros(values.shape, np.int64)
+        for state in range(1, starts.shape[1]):
+            label += values >= starts[:, state, None]
+        return label
+
+
+def states_from_data(memory: Remembered, width: float) -> States:
+    """Group all that the memory knows of each angle bin, samples and the ends of its pairs, into surfaces.
+
+    Ranges farther apart than width / 2 [m] are different surfaces. A group wider than 2 * width is no surface: its
+    densest window of one width is cut out, and again from the rests. Beyond STRETCH_FROM all widths grow with range.
+    """
+    known = np.concatenate((memory.samples, memory.left, np.roll(memory.right, 1, axis=1)), axis=2)
+    known = known.reshape(-1, known.shape[2])
+    known.sort(axis=1)
+    n_known = (memory.n_samples + memory.n_pairs + np.roll(memory.n_pairs, 1, axis=1)).reshape(-1)
+    size = round(width / _UNIT)
+    place = _stretched().take(known)
+    cut = place[:, 1:] - place[:, :-1] > size // 2
+    cut &= known[:, 1:] < UNSEEN
+    _cut_wide_groups(cut, place, n_known, size)
+    rows = np.flatnonzero(cut.any(axis=1))
+    return States(rows, _starts(known[rows], cut[rows], place[rows]), known, n_known)
+
+
+def _starts(known: Ranges, cut: Bools, place: Stretched) -> Ranges:
+    """First range of each state (rows, states); where there are too many, the smallest gaps are closed again."""
+    crowded = np.flatnonzero(cut.sum(axis=1) >= MAX_STATES)
+    for row in crowded:  # rare: a laser that returns noise
+        gaps = np.where(cut[row], np.diff(place[row]), -1)
+        cut[row] = False
+        cut[row, np.argsort(-gaps, kind="stable")[: MAX_STATES - 1]] = True
+    row, column = np.nonzero(cut)
+    number = np.cumsum(cut, axis=1)[row, column]
+    starts = np.full((len(known), int(number.max(initial=0)) + 1), UNSEEN, np.uint16)
+    starts[:, 0] = 0
+    starts[row, number] = known[row, column + 1]
+    return starts
+
+
+def _cut_wide_groups(cut: Bools, place: Stretched, count: Ints, size: int) -> None:
+    """Cut groups wider than two sizes into windows of one size, densest first, in place.
+
+    All such groups are worked on at once; each round takes one window out of every group that is still too wide.
+    """
+    wide = _groups_wider_than(2 * size, cut, place, count)
+    while len(wide):
+        row, start, stop = wide.T
+        begin, end = _densest_windows(place, wide, size)
+        before, after = begin > start, end < stop
+        cut[row[before], begin[before] - 1] = True
+        cut[row[after], end[after] - 1] = True
+        rests = np.concatenate((np.stack((row, start, begin), 1)[before], np.stack((row, end, stop), 1)[after]))
+        wide = rests[place[rests[:, 0], rests[:, 2] - 1] - place[rests[:, 0], rests[:, 1]] > size]
+
+
+def _groups_wider_than(limit: int, cut: Bools, place: Stretched, count: Ints) -> Ints:
+    """Groups (k, 3): row, first column and one past the last, of those that span more than `limit`."""
+    span = place[np.arange(len(place)), np.maximum(count, 1) - 1] - place[:, 0]
+    rows = np.flatnonzero(span > limit)  # most angle bins end here
+    row, column = np.nonzero(cut[rows])
+    row, start = np.append(np.arange(len(rows)), row), np.append(np.zeros(len(rows), np.int64), column + 1)
+    order = np.lexsort((start, row))
+    row, start = rows[row[order]], start[order]
+    stop = np.append(start[1:], 0)
+    final = np.append(row[1:] != row[:-1], True)[: len(row)]
+    stop = np.where(final, count[row], stop[: len(row)])
+    wide = place[row, stop - 1] - place[row, start] > limit
+    return np.stack((row, start, stop), 1)[wide]
+
+
+def _densest_windows(place: Stretched, groups: Ints, size: int) -> tuple[Ints, Ints]:
+    """First column and one past the last of each group's window of one size with the most ranges; ties: the nearest."""
+    row, start, stop = groups.T
+    length = stop - start
+    owner = np.repeat(np.arange(len(groups)), length)
+    column = np.arange(len(owner)) + np.repeat(stop - np.cumsum(length), length)
+    apart = np.int64(4 * _CLEAR_PLACE)
+    key = place[row[owner], column] + owner * apart
+    inside = np.searchsorted(key, key + size, side="right") - np.arange(len(key))
+    order = np.lexsort((-inside, owner))  # stable: the first of equals stays first
+    best = order[np.cumsum(length) - length]
+    return column[best], column[best] + inside[best]
+
+
+@cache
+def _stretched() -> Stretched:
+    """Place of each range [mm] on a scale [_UNIT] on which surfaces of any range are equally wide."""
+    bend = round(STRETCH_FROM * 1000)
+    stretch = [mm / 1000 if mm <= bend else STRETCH_FROM * (1 + math.log(mm / bend)) for mm in range(CLEAR)]
+    return np.array([round(metres / _UNIT) for metres in stretch] + [_CLEAR_PLACE, _UNSEEN_PLACE], np.int32)

@@ -1,0 +1,119 @@
+"""From a scan to what it would have been from a node's centre (paper, eq. 1 and 2, and what they leave open)."""
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model.line_of_sight import MILLIMETRES, Sight, line_of_sight
+from timemap_cli.model.outline import Outlines, outlines
+from timemap_cli.model.sweeps import Sweeps
+
+UNSEEN = 65535  # no evidence in this angle bin
+CLEAR = 65534  # nothing out to the node's radius
+MAX_RADIUS = 60.0  # [m] what 16 bits of millimetres hold, with room for the codes
+
+SIGHT_TOLERANCE = 100  # [mm] by which a hit may lie behind the outline: noise, and pose error within a scan
+HOLE_EDGE = np.float32(0.2)  # [m] two hits no farther apart than this are one surface
+
+Ranges = npt.NDArray[np.uint16]
+Bools = npt.NDArray[np.bool_]
+
+_BLOCK = 24  # scans at a time, so that the work stays in the processor's cache
+
+
+def virtual_scans(
+    sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int, radius: float
+) -> tuple[Ranges, Bools]:
+    """What n scans would have been from n node centres (n, 2) [m, map frame].
+
+    Returns ranges (n, angle_bins) [mm], measured ones or CLEAR or UNSEEN, and whether the scan can judge its node at
+    all (n,): the node's centre must lie in what the scan saw free, else its row is UNSEEN.
+    """
+    ranges = np.empty((len(sweeps), angle_bins), np.uint16)
+    judged = np.empty(len(sweeps), np.bool_)
+    for start in range(0, len(sweeps), _BLOCK):
+        part = slice(start, start + _BLOCK)
+        ranges[part], judged[part] = _from_nodes(sweeps.rows(part), centres[part], angle_bins, radius)
+    return ranges, judged
+
+
+def _from_nodes(
+    sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int, radius: float
+) -> tuple[Ranges, Bools]:
+    outline = outlines(sweeps, centres)
+    sight = line_of_sight(outline, angle_bins)
+    distance = _distances(outline)
+    reach = round(radius * 1000)
+    ranges = _nearest_hits(outline, sight, distance, angle_bins, reach)
+    _close_holes(ranges, outline, sight, distance, reach)
+    ranges[(ranges == UNSEEN) & _clear(sight, reach)] = CLEAR
+    ranges[~sight.encloses] = UNSEEN
+    return ranges, sight.encloses
+
+
+def _distances(outline: Outlines) -> npt.NDArray[np.float32]:
+    """Distance of every vertex from the node [mm, whole] (n, vertices + 1)."""
+    distance = outline.x * outline.x
+    distance += outline.y * outline.y
+    np.sqrt(distance, out=distance)
+    distance *= MILLIMETRES
+    return np.rint(distance, out=distance)
+
+
+def _nearest_hits(
+    outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], angle_bins: int, reach: int
+) -> Ranges:
+    """The nearest hit in each angle bin (n, angle_bins) that nothing hides from the node."""
+    n, rays = sight.free.shape
+    candidate = distance <= reach
+    candidate &= outline.hit
+    candidate[:, -1] = False
+    chosen = np.flatnonzero(candidate)
+    cell = sight.bearing.ravel().take(chosen).astype(np.int64)
+    row = chosen // candidate.shape[1]
+    row *= rays
+    cell += row
+    found = distance.ravel().take(chosen)
+    # A hit can only be hidden where the outline runs backwards: elsewhere each ray leaves it once, at the hit itself.
+    doubtful = np.flatnonzero(sight.folded.ravel().take(cell))
+    bearing = sight.bearing.ravel().take(chosen.take(doubtful))
+    hidden = doubtful[found.take(doubtful) > _free_towards(sight, cell.take(doubtful), bearing) + SIGHT_TOLERANCE]
+    value = found.astype(np.uint16)
+    value[hidden] = UNSEEN
+    nearest = np.full(n * angle_bins, UNSEEN, np.uint16)
+    cell >>= 1  # two cells an angle bin; rays is even, so rows stay apart
+    np.minimum.at(nearest, cell, value)
+    return nearest.reshape(n, angle_bins)
+
+
+def _free_towards(
+    sight: Sight, cell: npt.NDArray[np.int64], bearing: npt.NDArray[np.float32]
+) -> npt.NDArray[np.float32]:
+    """Free distance [mm] at bearings between two rays, interpolated."""
+    rays = sight.free.shape[1]
+    free = sight.free.ravel()
+    following = cell + 1
+    following[following % rays == 0] -= rays
+    here, there = free.take(cell).astype(np.float32), free.take(following).astype(np.float32)
+    return np.asarray(here + (bearing - np.floor(bearing)) * (there - here), np.float32)
+
+
+def _close_holes(
+    ranges: Ranges, outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int
+) -> None:
+    """Give an empty angle bin between two near hits of one surface the range of the nearer, in place."""
+    row, column = np.nonzero((ranges == UNSEEN) & (sight.free[:, 1::2] <= reach))
+    edge = sight.edge[row, 2 * column + 1].astype(np.int64)
+    surface = outline.hit[row, edge] & outline.hit[row, edge + 1]
+    row, column, edge = row[surface], column[surface], edge[surface]
+    dx = outline.x[row, edge + 1] - outline.x[row, edge]
+    dy = outline.y[row, edge + 1] - outline.y[row, edge]
+    nearer = np.minimum(distance[row, edge], distance[row, edge + 1])
+    closed = (dx * dx + dy * dy <= HOLE_EDGE * HOLE_EDGE) & (nearer <= reach)
+    ranges[row[closed], column[closed]] = nearer[closed].astype(np.uint16)
+
+
+def _clear(sight: Sight, reach: int) -> Bools:
+    """Angle bins (n, angle_bins) of which both borders and the centre are free beyond the radius."""
+    far = sight.free > reach
+    border = far[:, ::2]
+    return np.asarray(far[:, 1::2] & border & np.roll(border, -1, axis=1))
