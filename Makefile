@@ -1,0 +1,60 @@
+# make setup   .venv with timemap in it
+# make demo    the main job on the sample recordings: replay, then diff
+# make test    the tests
+# make check   ruff, mypy, import-linter
+# make bench   how fast a replay is beside plain reading
+# make clean   remove what the above made, except .venv
+
+VENV := .venv
+BIN := $(VENV)/bin
+BUILD := build
+SAMPLES := sample_logs/patrol_monday.mcap sample_logs/patrol_tuesday.bag sample_logs/patrol_thursday
+
+# The versions in constraints.txt hold for the tools that build the package, too.
+PIP_INSTALL := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
+
+.PHONY: setup demo test check bench clean
+.DELETE_ON_ERROR:
+
+setup: $(VENV)/timemap.stamp
+
+demo: $(VENV)/timemap.stamp
+	@mkdir -p $(BUILD)
+	$(BIN)/timemap replay $(SAMPLES) -o $(BUILD)/demo.timemap.mcap --force
+	@echo
+	$(BIN)/timemap diff $(BUILD)/demo.timemap.mcap --level long mid
+
+test: $(VENV)/dev.stamp
+	$(BIN)/python -m pytest -q
+
+check: $(VENV)/dev.stamp
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
+
+bench: $(VENV)/timemap.stamp
+	$(BIN)/python benchmarks/replay_hour.py
+
+clean:
+	rm -rf $(BUILD) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache *.egg-info
+	find timemap_cli tests sample_logs benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/timemap.stamp: pyproject.toml constraints.txt $(BIN)/python
+	$(PIP_INSTALL) -e .
+	@touch $@
+
+$(VENV)/dev.stamp: $(VENV)/timemap.stamp
+	$(PIP_INSTALL) -e '.[dev]'
+	@touch $@
+
+# The first Python on the path that is new enough and can make an environment with pip in it.
+$(BIN)/python:
+	@for python in python3 python3.13 python3.12 python3.11 python3.14 python; do \
+	  if $$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
+	    echo "$$python -m venv $(VENV)"; exec $$python -m venv $(VENV); \
+	  fi; \
+	done; \
+	echo 'error: no Python 3.11 or newer with the modules venv and ensurepip was found' >&2; \
+	echo '  try: apt-get install python3-venv' >&2; \
+	exit 1

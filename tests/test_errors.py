@@ -1,0 +1,22 @@
+from timemap_cli.errors import ExitCode, TimemapError, UsageError
+
+
+def test_exit_codes_are_those_of_the_readme():
+    assert [int(code) for code in ExitCode] == [0, 1, 2, 3, 4, 130]
+
+
+def test_an_error_carries_message_hint_and_code():
+    error = TimemapError("log.mcap is cut off", hint="mcap recover log.mcap", exit_code=ExitCode.DATA_LOST)
+    assert (str(error), error.message) == ("log.mcap is cut off", "log.mcap is cut off")
+    assert (error.hint, error.exit_code) == ("mcap recover log.mcap", 3)
+
+
+def test_an_error_without_more_said_means_failed_and_has_no_hint():
+    error = TimemapError("disk full")
+    assert (error.hint, error.exit_code) == (None, 1)
+
+
+def test_a_usage_error_is_a_timemap_error_with_code_2():
+    error = UsageError("no such topic", hint="timemap info log.mcap")
+    assert isinstance(error, TimemapError)
+    assert (error.hint, error.exit_code) == ("timemap info log.mcap", 2)

@@ -1,0 +1,36 @@
+"""What may go wrong that a user can mend, and the exit codes."""
+
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """What the program tells the shell."""
+
+    DONE = 0
+    FAILED = 1
+    USAGE = 2  # options, settings, missing or existing files, selection
+    DATA_LOST = 3  # done, but a recording was cut off or too many scans were dropped
+    DIFFERENT = 4  # a check failed, or there are differences and the caller asked for this code
+    INTERRUPTED = 130
+
+
+class TimemapError(Exception):
+    """An expected failure: one sentence that names the value and the place, and a hint what to try.
+
+    The hint may hold several lines, each of them something to do or to paste.
+    """
+
+    def __init__(
+        self, message: str, *, hint: str | None = None, exit_code: ExitCode = ExitCode.FAILED
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.hint = hint
+        self.exit_code = exit_code
+
+
+class UsageError(TimemapError):
+    """The call cannot be carried out as it was given: nothing was computed or written."""
+
+    def __init__(self, message: str, *, hint: str | None = None) -> None:
+        super().__init__(message, hint=hint, exit_code=ExitCode.USAGE)
