@@ -1,0 +1,304 @@
+"""Recordings of every format give the same content; what is no recording, or damaged, is said in one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import zstandard
+
+from tests.logs import recorded
+from tests.logs.recorded import ROS1, ROS2, START_NS, TOPICS, CompressionType, IndexType, StoragePlugin
+from timemap_cli.errors import ExitCode, TimemapError, UsageError
+from timemap_cli.logs.recordings import Recording, open_recordings
+
+WITHOUT_INDEX = {"index_types": IndexType.NONE, "use_statistics": False, "repeat_channels": False}
+
+
+def read(path: Path, topics=TOPICS, **window) -> dict:
+    with Recording(path) as recording:
+        return recorded.rows([batch for batches in recording.batches(topics, **window) for batch in batches])
+
+
+def problems_after_reading(path: Path) -> str:
+    with Recording(path) as recording:
+        for _ in recording.batches(TOPICS):
+            pass
+        return " / ".join(recording.problems)
+
+
+def mcap(**options):
+    return lambda folder, n=20: recorded.write_mcap(folder / "run.mcap", recorded.drive(ROS2, n), **options)
+
+
+def bag(compression):
+    return lambda folder, n=20: recorded.write_bag(
+        folder / "run.bag", recorded.drive(ROS1, n), compression, chunk_bytes=2000
+    )
+
+
+def rosbag2(plugin, mode):
+    return lambda folder, n=20: recorded.write_rosbag2(folder / "run", recorded.drive(ROS2, n), plugin, mode)
+
+
+FORMATS = {
+    "bag": (bag("none"), "ROS 1 bag"),
+    "bag_bz2": (bag("bz2"), "ROS 1 bag"),
+    "bag_lz4": (bag("lz4"), "ROS 1 bag"),
+    "mcap": (mcap(), "ROS 2 mcap"),
+    "mcap_lz4": (mcap(compression=CompressionType.LZ4), "ROS 2 mcap"),
+    "mcap_without_index": (mcap(**WITHOUT_INDEX), "ROS 2 mcap"),
+    "mcap_without_message_index": (mcap(index_types=IndexType.CHUNK), "ROS 2 mcap"),
+    "mcap_without_chunks": (mcap(use_chunking=False), "ROS 2 mcap"),
+    "mcap_without_profile": (mcap(profile=""), "MCAP"),
+    "folder_mcap": (rosbag2(StoragePlugin.MCAP, "none"), "ROS 2 mcap"),
+    "folder_mcap_storage": (rosbag2(StoragePlugin.MCAP, "storage"), "ROS 2 mcap"),
+    "folder_mcap_message": (rosbag2(StoragePlugin.MCAP, "message"), "ROS 2 mcap"),
+    "folder_mcap_file": (rosbag2(StoragePlugin.MCAP, "file"), "ROS 2 mcap"),
+    "folder_sqlite": (rosbag2(StoragePlugin.SQLITE3, "none"), "ROS 2 sqlite3"),
+    "folder_sqlite_message": (rosbag2(StoragePlugin.SQLITE3, "message"), "ROS 2 sqlite3"),
+    "folder_sqlite_file": (rosbag2(StoragePlugin.SQLITE3, "file"), "ROS 2 sqlite3"),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_gives_what_was_written(tmp_path, name):
+    write, label = FORMATS[name]
+    path = write(tmp_path)
+    assert read(path) == recorded.drive_rows(ROS2)
+    with Recording(path) as recording:
+        assert recording.format == label
+        assert recording.start_ns == START_NS
+        assert recording.end_ns == START_NS + 1_900_000_005
+        assert {topic.name: topic.count for topic in recording.topics} == {
+            name: 1 if name == "/tf_static" else 20 for name in TOPICS
+        }
+        assert recording.problems == ()
+
+
+def test_mcap_of_ros1_profile(tmp_path):
+    path = recorded.write_mcap(tmp_path / "run.mcap", recorded.drive(ROS1), profile="ros1")
+    assert read(path) == recorded.drive_rows(ROS1)
+    with Recording(path) as recording:
+        assert recording.format == "MCAP (ros1)"
+        assert ("/tf", "tf2_msgs/msg/TFMessage") in [(one.name, one.msgtype) for one in recording.topics]
+
+
+@pytest.mark.parametrize("name", ["bag", "mcap"])
+def test_suffix_does_not_matter(tmp_path, name):
+    path = FORMATS[name][0](tmp_path).rename(tmp_path / "recording.db3")
+    assert read(path) == recorded.drive_rows(ROS2)
+
+
+@pytest.mark.parametrize(
+    "name", ["folder_mcap", "folder_sqlite", "folder_mcap_file", "folder_sqlite_message"]
+)
+def test_folder_without_metadata(tmp_path, name):
+    path = FORMATS[name][0](tmp_path)
+    (path / "metadata.yaml").unlink()
+    assert read(path) == recorded.drive_rows(ROS2)
+
+
+@pytest.mark.parametrize("name", ["folder_mcap", "folder_sqlite", "folder_mcap_file"])
+def test_lone_storage_file(tmp_path, name):
+    (file,) = [one for one in FORMATS[name][0](tmp_path).iterdir() if one.name != "metadata.yaml"]
+    assert read(file) == recorded.drive_rows(ROS2)
+
+
+def split_folder(tmp_path: Path) -> Path:
+    messages = recorded.drive(ROS2)
+    folder = tmp_path / "run"
+    folder.mkdir()
+    recorded.write_mcap(folder / "run_10.mcap", messages[50:])
+    recorded.write_mcap(folder / "run_9.mcap", messages[:50])
+    return folder
+
+
+def test_parts_of_a_recording_are_read_in_order_of_time(tmp_path):
+    folder = split_folder(tmp_path)
+    assert read(folder) == recorded.drive_rows(ROS2)
+    with Recording(folder) as recording:
+        assert (recording.start_ns, recording.end_ns) == (START_NS, START_NS + 1_900_000_005)
+
+
+def test_a_part_that_metadata_names_and_is_missing_is_told(tmp_path):
+    folder = split_folder(tmp_path)
+    names = ["run_9.mcap", "run_10.mcap", "run_11.mcap"]
+    (folder / "metadata.yaml").write_text(f"rosbag2_bagfile_information: {{relative_file_paths: {names}}}")
+    assert read(folder) == recorded.drive_rows(ROS2)
+    assert problems_after_reading(folder) == "run_11.mcap is missing, although metadata.yaml names it"
+
+
+def test_unreadable_metadata_is_told_and_the_files_are_read(tmp_path):
+    folder = split_folder(tmp_path)
+    (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: {version: [")
+    assert read(folder) == recorded.drive_rows(ROS2)
+    assert "metadata.yaml cannot be read" in problems_after_reading(folder)
+
+
+def test_folder_of_several_recordings_is_refused_and_they_are_named(tmp_path):
+    FORMATS["mcap"][0](tmp_path)
+    recorded.write_mcap(tmp_path / "other.mcap", recorded.drive(ROS2))
+    with pytest.raises(UsageError, match="holds several recordings") as caught:
+        Recording(tmp_path)
+    assert caught.value.hint == f"{tmp_path / 'other.mcap'}\n{tmp_path / 'run.mcap'}"
+
+
+def test_messages_outside_the_window_are_left_out(tmp_path):
+    start_ns, end_ns = START_NS + 500_000_002, START_NS + 900_000_002  # scans 5 (included) to 9 (excluded)
+    for name in ("bag", "mcap", "mcap_without_index", "folder_sqlite"):
+        folder = tmp_path / name
+        folder.mkdir()
+        found = read(FORMATS[name][0](folder), ["/scan"], start_ns=start_ns, end_ns=end_ns)
+        assert found == {
+            key: value[5:9] for key, value in recorded.drive_rows(ROS2).items() if key[0] == "scan"
+        }
+
+
+def test_recordings_come_in_order_of_their_start(tmp_path):
+    messages = recorded.drive(ROS2)
+    paths = [
+        recorded.write_mcap(tmp_path / f"{name}.mcap", part)
+        for name, part in (("b", messages[60:]), ("a", messages[:30]), ("c", messages[30:60]))
+    ]
+    recordings = open_recordings(paths)
+    assert [one.path.stem for one in recordings] == ["a", "c", "b"]
+    for one in recordings:
+        one.close()
+
+
+def test_connections_of_one_topic_are_read_together(tmp_path):
+    messages = [one for one in recorded.drive(ROS1) if one.topic == "/tf"]
+    path = tmp_path / "run.bag"
+    with recorded.BagWriter(path) as writer:
+        connections = [
+            writer.add_connection("/tf", messages[0].msgtype, typestore=ROS1, callerid=name)
+            for name in ("/amcl", "/driver")
+        ]
+        for index, one in enumerate(messages):
+            writer.write(connections[index % 2], one.log_ns, recorded.serialised(ROS1, one.content))
+    whole = recorded.drive_rows(ROS1)
+    assert read(path) == {key: whole[key] for key in whole if key[:2] == ("transform", False)}
+    with Recording(path) as recording:
+        assert [(topic.name, topic.count) for topic in recording.topics] == [("/tf", 20)]
+        batches = [batch for batches in recording.batches(["/tf"]) for batch in batches]
+    assert sorted(len(batch.log_ns) for batch in batches) == [7, 20]
+
+
+def test_topics_that_are_not_there_give_nothing(tmp_path):
+    assert read(FORMATS["mcap"][0](tmp_path), ["/scan2"]) == {}
+
+
+def test_topic_of_a_type_that_is_not_read_is_refused(tmp_path):
+    clock = recorded.make(ROS2, "std_msgs/msg/String", data="hello")
+    path = recorded.write_mcap(tmp_path / "run.mcap", [recorded.Message("/chatter", START_NS, clock)])
+    with pytest.raises(UsageError, match=r"/chatter in .*run\.mcap holds std_msgs/msg/String"):
+        read(path, ["/chatter"])
+
+
+def test_recording_without_messages(tmp_path):
+    path = recorded.write_mcap(tmp_path / "run.mcap", [])
+    with Recording(path) as recording:
+        assert (recording.start_ns, recording.end_ns, recording.topics) == (0, 0, ())
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "is not a recording: it is empty"),
+        (b"image: map.pgm\nresolution: 0.05\n", "is neither a ROS 1 bag nor a ROS 2 bag nor an MCAP file"),
+        (b"#ROSRECORD V1.2\n", "is a ROS bag of version 1.2; only version 2.0 is read"),
+        (b"#ROSBAG V1.1\n", "is a ROS bag of version 1.1; only version 2.0 is read"),
+    ],
+)
+def test_files_that_are_no_recording(tmp_path, content, message):
+    path = tmp_path / "file.bag"
+    path.write_bytes(content)
+    with pytest.raises(UsageError) as caught:
+        Recording(path)
+    assert str(path) in caught.value.message
+    assert message in caught.value.message
+
+
+@pytest.mark.parametrize("magic", [b"#ROSBAG V2.0\n", b"\x89MCAP0\r\n", b"SQLite format 3\0"])
+def test_files_that_only_begin_like_a_recording(tmp_path, magic):
+    path = tmp_path / "file"
+    path.write_bytes(magic + bytes(range(100)))
+    with pytest.raises(TimemapError, match="cannot be read: ") as caught:
+        Recording(path)
+    assert str(path) in caught.value.message
+    assert caught.value.exit_code == ExitCode.FAILED
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(UsageError, match=r"there is no file .*nothing\.bag"):
+        open_recordings([tmp_path / "nothing.bag"])
+
+
+def test_folder_without_recordings(tmp_path):
+    with pytest.raises(UsageError, match="holds no recording"):
+        Recording(tmp_path)
+
+
+def test_the_same_recording_twice_is_refused(tmp_path):
+    path = FORMATS["mcap"][0](tmp_path)
+    with pytest.raises(UsageError, match="is given twice"):
+        open_recordings([path, tmp_path / "." / path.name])
+
+
+def test_result_of_ours_is_refused(tmp_path):
+    for options in ({}, WITHOUT_INDEX):
+        path = recorded.write_mcap(tmp_path / "out.mcap", recorded.drive(ROS2), metadata="timemap", **options)
+        with pytest.raises(UsageError, match="is a result of timemap, not a recording") as caught:
+            Recording(path)
+        assert str(path) in str(caught.value.hint)
+
+
+@pytest.mark.parametrize("name", ["mcap", "mcap_without_chunks", "bag", "bag_lz4"])
+def test_what_comes_before_the_cut_is_read_and_the_cut_is_told(tmp_path, name):
+    path = FORMATS[name][0](tmp_path, 200)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    found = read(path)
+    whole = recorded.drive_rows(ROS2, 200)
+    scans = ("scan", "/scan", "laser")
+    assert 50 < len(found[scans]) < 150
+    assert all(found[key] == whole[key][: len(found[key])] for key in found)
+    assert "it is cut off at byte" in problems_after_reading(path)
+
+
+def test_bag_that_was_never_closed_is_read_whole(tmp_path):
+    path = FORMATS["bag"][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    at = content.index(b"index_pos=") + len(b"index_pos=")
+    content[at : at + 8] = bytes(8)
+    path.write_bytes(content)
+    assert read(path) == recorded.drive_rows(ROS2)
+    assert "index is missing" in problems_after_reading(path)
+
+
+@pytest.mark.parametrize("name", ["mcap", "mcap_lz4", "bag_bz2", "bag_lz4"])
+def test_damaged_chunk_is_left_out_and_told(tmp_path, name):
+    path = FORMATS[name][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    magic = {"mcap": b"\x28\xb5\x2f\xfd", "bag_bz2": b"BZh"}.get(name, b"\x04\x22\x4d\x18")
+    second = content.index(magic, content.index(magic) + 1)
+    content[second + 4 : second + 44] = b"\xff" * 40
+    path.write_bytes(content)
+    found, whole = read(path), recorded.drive_rows(ROS2)
+    scans = ("scan", "/scan", "laser")
+    assert 0 < len(found[scans]) < 20
+    assert set(found[scans]) < set(whole[scans])
+    assert "is damaged and left out" in problems_after_reading(path)
+
+
+def test_journal_beside_a_database_is_told(tmp_path):
+    folder = FORMATS["folder_sqlite"][0](tmp_path)
+    (folder / "run.db3-wal").write_bytes(b"something")
+    assert "run.db3-wal are not read" in problems_after_reading(folder)
+
+
+def test_compressed_file_that_is_no_recording(tmp_path):
+    path = tmp_path / "notes.txt.zstd"
+    path.write_bytes(zstandard.compress(b"some text"))
+    with pytest.raises(UsageError, match="is not a recording"):
+        Recording(path)

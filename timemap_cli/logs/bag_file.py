@@ -1,0 +1,175 @@
+"""Reading of ROS 1 bags (format 2.0) down to undecoded messages.
+
+Whole chunks are taken apart at once with their index. A bag without an index, as a crash leaves it behind,
+is scanned from the beginning; what comes before the damage is read.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections import Counter
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from timemap_cli.logs import bag_records as records
+from timemap_cli.logs.bag_records import DamagedBagError
+from timemap_cli.logs.chunked import ChunkSpan, in_log_order, stretches, within
+from timemap_cli.logs.raw import Connection, RawMessages
+
+MAGIC = b"#ROSBAG V2.0\n"
+
+
+@dataclass(frozen=True, slots=True)
+class BagSpan(ChunkSpan):
+    """A chunk and the number of messages by connection in it."""
+
+    counts: dict[int, int]
+
+
+class BagFile:
+    """A ROS 1 bag that is open for reading (a ``Storage``)."""
+
+    format = "ROS 1 bag"
+
+    def __init__(self, path: Path) -> None:
+        """Open it and read its index; without one, scan it. Raises OSError or DamagedBagError."""
+        self._file: IO[bytes] = path.open("rb")
+        self.problems: list[str] = []
+        try:
+            header = records.file_record(self._file, len(MAGIC))
+            if header.fields.get("encryptor"):
+                raise DamagedBagError("it is encrypted")
+            try:
+                found, self._spans = _read_index(self._file, header)
+            except (DamagedBagError, struct.error, ValueError):
+                found, self._spans = self._scan(header)
+        except BaseException:
+            self._file.close()
+            raise
+        counts: Counter[int] = Counter()
+        for span in self._spans:
+            counts.update(span.counts)
+        self.connections = tuple(replace(found[key], count=counts[key]) for key in sorted(found))
+        self.start_ns = min((span.start_ns for span in self._spans), default=0)
+        self.end_ns = max((span.end_ns for span in self._spans), default=0)
+
+    def close(self) -> None:
+        """Release the file."""
+        self._file.close()
+
+    def stretches(
+        self, connections: Collection[int], start_ns: int | None, end_ns: int | None
+    ) -> Iterator[list[RawMessages]]:
+        """Messages of the connections with these ids, see ``Storage``."""
+        wanted = {item.id: item for item in self.connections if item.id in connections}
+        spans = [
+            span
+            for span in self._spans
+            if (start_ns is None or span.end_ns >= start_ns)
+            and (end_ns is None or span.start_ns < end_ns)
+            and not span.counts.keys().isdisjoint(wanted)
+        ]
+        return stretches(spans, partial(self._load, wanted=wanted, start_ns=start_ns, end_ns=end_ns))
+
+    def _load(
+        self, span: BagSpan, wanted: dict[int, Connection], start_ns: int | None, end_ns: int | None
+    ) -> list[RawMessages]:
+        """Messages of one chunk; none, and an entry in ``problems``, where it is damaged."""
+        try:
+            chunk = records.file_record(self._file, span.offset)
+            content = records.chunk_content(chunk, records.record_data(self._file, chunk))
+            data = np.frombuffer(content, np.uint8)
+            entries = records.from_index(data, self._index(chunk.stop, len(span.counts)))
+            if entries is None or {key: len(entries[key][0]) for key in entries} != span.counts:
+                entries = records.walk(content)
+        except (DamagedBagError, struct.error) as error:
+            self.problems.append(f"the chunk at byte {span.offset} is damaged and left out: {error}")
+            return []
+        parts = [
+            in_log_order(RawMessages(wanted[key], log_ns, data, starts, sizes))
+            for key, (log_ns, starts, sizes) in entries.items()
+            if key in wanted
+        ]
+        return [chosen for part in parts if len(chosen := within(part, start_ns, end_ns))]
+
+    def _index(self, position: int, count: int) -> list[tuple[int, bytes]]:
+        """The ``count`` index records behind a chunk, as far as there are so many."""
+        index = []
+        try:
+            for _ in range(count):
+                record = records.file_record(self._file, position)
+                if record.op != records.INDEX:
+                    break
+                # Like ROS itself: some writers announce another length than that of the entries.
+                stop = record.start + record.number("count") * records.INDEX_ENTRY.itemsize
+                data = records.record_data(self._file, replace(record, stop=stop))
+                index.append((record.number("conn"), data))
+                position = stop
+        except (DamagedBagError, struct.error):
+            return []
+        return index
+
+    def _scan(self, header: records.Record) -> tuple[dict[int, Connection], list[BagSpan]]:
+        """Connections and chunks found by going through the file as far as it goes."""
+        size = self._file.seek(0, 2)
+        found: dict[int, Connection] = {}
+        spans: list[BagSpan] = []
+        position = header.stop
+        try:
+            while position < size:
+                record = records.file_record(self._file, position)
+                if record.stop > size:
+                    raise DamagedBagError("it is cut off")
+                if record.op == records.CHUNK:
+                    content = records.chunk_content(record, records.record_data(self._file, record))
+                    for inner in records.buffer_records(content):
+                        if inner.op == records.CONNECTION:
+                            one = records.connection(inner, content[inner.start : inner.stop])
+                            found[one.id] = one
+                    spans += _walked_span(position, content)
+                elif record.op == records.CONNECTION:
+                    break
+                position = record.stop
+            reason = "its index is missing or damaged, as after a crash; all of it is read"
+        except (DamagedBagError, struct.error):
+            reason = f"it is cut off at byte {position} of {size}; what comes before is read"
+        self.problems.append(reason)
+        return found, spans
+
+
+def _walked_span(position: int, content: bytes) -> list[BagSpan]:
+    """The chunk at ``position`` with the messages found in it; empty where there are none."""
+    entries = records.walk(content)
+    if not entries:
+        return []
+    times = np.concatenate([log_ns for log_ns, _, _ in entries.values()])
+    counts = {key: len(log_ns) for key, (log_ns, _, _) in entries.items()}
+    return [BagSpan(position, int(times.min()), int(times.max()), counts)]
+
+
+def _read_index(file: IO[bytes], header: records.Record) -> tuple[dict[int, Connection], list[BagSpan]]:
+    """Connections and chunks as the index at the end of the bag lists them."""
+    position = header.number("index_pos")
+    if header.op != records.BAG_HEADER or position == 0:
+        raise DamagedBagError("it has no index")
+    found: dict[int, Connection] = {}
+    for _ in range(header.number("conn_count")):
+        record = records.file_record(file, position)
+        one = records.connection(record, records.record_data(file, record))
+        found[one.id] = one
+        position = record.stop
+    spans = []
+    for _ in range(header.number("chunk_count")):
+        record = records.file_record(file, position)
+        counted = struct.iter_unpack("<II", records.record_data(file, record))
+        counts = {key: count for key, count in counted if count}
+        if counts:
+            start_ns, end_ns = record.time_ns("start_time"), record.time_ns("end_time")
+            spans.append(BagSpan(record.number("chunk_pos"), start_ns, end_ns, counts))
+        position = record.stop
+    return found, spans

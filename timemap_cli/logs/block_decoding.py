@@ -1,0 +1,134 @@
+"""Decoding of many messages of one layout at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from timemap_cli.logs.batches import (
+    BadBatch,
+    Batch,
+    BeamLayout,
+    Int64s,
+    PoseBatch,
+    ScanBatch,
+    TransformBatch,
+)
+from timemap_cli.logs.message_types import MESSAGE_TYPES, Kind
+from timemap_cli.logs.raw import RawMessages
+from timemap_cli.logs.tracing import Element, Trace
+
+MALFORMED = "malformed"
+SECOND_NS = 1_000_000_000
+POSE_BYTES = 7 * 8
+COVARIANCE_BYTES = 36 * 8
+SCAN_NUMBERS = 7  # angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max
+LAYOUT_NUMBERS = [0, 2, 5]  # angle_min, angle_increment, range_min
+
+
+def decode_block(messages: RawMessages, trace: Trace) -> Iterator[Batch]:
+    """Batches of messages that all have this layout."""
+    return _READERS[MESSAGE_TYPES[messages.connection.msgtype].kind](messages, trace)
+
+
+def _scans(messages: RawMessages, trace: Trace) -> Iterator[Batch]:
+    """Scans, divided where the beams lie differently; those without usable beams are counted as malformed."""
+    (element,) = trace.elements
+    topic, count = messages.connection.topic, element.lengths["ranges"]
+    numbers = messages.columns(element.offsets["angle_min"], 4 * SCAN_NUMBERS).view("<f4")
+    keys = np.ascontiguousarray(numbers[:, LAYOUT_NUMBERS]).view("<u4")
+    for key, chosen in _same_rows(keys):
+        angle_min, angle_increment, range_min = key.view("<f4").tolist()
+        layout = BeamLayout(angle_min, angle_increment, count, range_min)
+        part = messages[chosen]
+        if not has_beams(layout):
+            yield BadBatch(topic, MALFORMED, len(part))
+            continue
+        yield ScanBatch(
+            topic=topic,
+            frame_id=frame_name(element.texts["header.frame_id"]),
+            layout=layout,
+            stamps_ns=_stamps(part, element),
+            log_ns=part.log_ns,
+            ranges=part.columns(element.offsets["ranges"], 4 * count).view("<f4"),
+            range_max=numbers[chosen, 6],
+            time_increment=numbers[chosen, 3],
+        )
+
+
+def _transforms(messages: RawMessages, trace: Trace) -> Iterator[Batch]:
+    for element in trace.elements:
+        numbers = messages.columns(element.offsets["transform.translation.x"], POSE_BYTES).view("<f8")
+        yield TransformBatch(
+            parent=frame_name(element.texts["header.frame_id"]),
+            child=frame_name(element.texts["child_frame_id"]),
+            static=is_static(messages.connection.topic),
+            stamps_ns=_stamps(messages, element),
+            log_ns=messages.log_ns,
+            translation=numbers[:, :3],
+            rotation=numbers[:, 3:],
+        )
+
+
+def _poses(messages: RawMessages, trace: Trace) -> Iterator[Batch]:
+    (element,) = trace.elements
+    has_covariance = "pose.covariance" in element.offsets
+    numbers = messages.columns(
+        element.offsets["pose.pose.position.x" if has_covariance else "pose.position.x"], POSE_BYTES
+    ).view("<f8")
+    child = element.texts.get("child_frame_id")
+    covariance = None
+    if has_covariance:
+        covariance = messages.columns(element.offsets["pose.covariance"], COVARIANCE_BYTES).view("<f8")
+    yield PoseBatch(
+        topic=messages.connection.topic,
+        frame_id=frame_name(element.texts["header.frame_id"]),
+        child_frame_id=None if child is None else frame_name(child),
+        stamps_ns=_stamps(messages, element),
+        log_ns=messages.log_ns,
+        translation=numbers[:, :3],
+        rotation=numbers[:, 3:],
+        covariance=None if covariance is None else covariance.reshape(-1, 6, 6),
+    )
+
+
+_READERS: dict[Kind, Callable[[RawMessages, Trace], Iterator[Batch]]] = {
+    Kind.SCAN: _scans,
+    Kind.TRANSFORMS: _transforms,
+    Kind.POSE: _poses,
+}
+
+
+def _stamps(messages: RawMessages, element: Element) -> Int64s:
+    """Header stamps (n,) [ns]."""
+    words = messages.columns(element.offsets["header.stamp.sec"], 8)
+    seconds = words[:, :4].view("<i4")[:, 0].astype(np.int64)
+    nanoseconds = words[:, 4:].view("<u4")[:, 0].astype(np.int64)
+    return seconds * SECOND_NS + nanoseconds
+
+
+def _same_rows(rows: NDArray[np.uint32]) -> Iterator[tuple[NDArray[np.uint32], NDArray[np.int64]]]:
+    """Each different row and the indices (ascending) where it stands, in order of first appearance."""
+    if (rows == rows[0]).all():
+        yield rows[0], np.arange(len(rows))
+        return
+    unique, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    for index in np.argsort(first):
+        yield unique[index], np.flatnonzero(inverse.reshape(-1) == index)
+
+
+def has_beams(layout: BeamLayout) -> bool:
+    """Whether there are beams and it is known where they look."""
+    return layout.count > 0 and bool(np.isfinite([layout.angle_min, layout.angle_increment]).all())
+
+
+def frame_name(recorded: str) -> str:
+    """A frame's name without the leading slash of old ROS."""
+    return recorded.lstrip("/")
+
+
+def is_static(topic: str) -> bool:
+    """Whether transforms on this topic hold for all times."""
+    return topic.rsplit("/", 1)[-1] == "tf_static"

@@ -1,0 +1,141 @@
+"""From a path a user gives to the open files of one recording, each recognised by its first bytes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path, PurePath
+from tempfile import TemporaryDirectory
+
+import zstandard
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.logs.bag_file import BagFile
+from timemap_cli.logs.mcap_file import McapFile
+from timemap_cli.logs.raw import Storage
+from timemap_cli.logs.sqlite_file import SqliteFile
+
+ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
+OLD_BAG = re.compile(rb"#ROS(?:BAG|RECORD) V(\d+\.\d+)")
+READERS: dict[bytes, Callable[[Path], Storage]] = {
+    b"#ROSBAG V2.0\n": BagFile,
+    b"\x89MCAP0\r\n": McapFile,
+    b"SQLite format 3\0": SqliteFile,
+}
+METADATA = "metadata.yaml"
+RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
+
+
+def open_files(path: Path, stack: ExitStack) -> tuple[list[Storage], list[str]]:
+    """The files of the recording at ``path``, in order of time, and what is wrong with them.
+
+    ``stack`` closes them. Raises UsageError where there is no recording, and what the readers raise.
+    """
+    if path.is_dir():
+        paths, problems = _files_of_folder(path)
+    elif path.exists():
+        paths, problems = [path], []
+    else:
+        raise UsageError(f"there is no file {path}")
+    storages = [_open_file(one, stack) for one in paths]
+    storages.sort(key=lambda storage: storage.start_ns)
+    return storages, problems
+
+
+def _open_file(path: Path, stack: ExitStack) -> Storage:
+    head = _head(path)
+    if head.startswith(ZSTD_MAGIC):
+        unpacked = _decompressed(path, stack)
+        head, source = _head(unpacked), unpacked
+    else:
+        source = path
+    reader = _reader(head)
+    if reader is None:
+        raise _refusal(path, head)
+    storage = reader(source)
+    stack.callback(storage.close)
+    if isinstance(storage, McapFile) and RESULT_RECORD in storage.metadata_names:
+        raise UsageError(
+            f"{path} is a result of timemap, not a recording",
+            hint=f"timemap diff {path} --level long mid",
+        )
+    return storage
+
+
+def _reader(head: bytes) -> Callable[[Path], Storage] | None:
+    return next((reader for magic, reader in READERS.items() if head.startswith(magic)), None)
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(32)
+
+
+def _refusal(path: Path, head: bytes) -> TimemapError:
+    """What to say about a file that is no recording we read."""
+    if old := OLD_BAG.match(head):
+        version = old.group(1).decode()
+        return UsageError(
+            f"{path} is a ROS bag of version {version}; only version 2.0 is read",
+            hint="convert it with ROS 1: rosbag fix OLD.bag NEW.bag",
+        )
+    reason = "it is empty" if not head else "it is neither a ROS 1 bag nor a ROS 2 bag nor an MCAP file"
+    return UsageError(f"{path} is not a recording: {reason}")
+
+
+def _decompressed(path: Path, stack: ExitStack) -> Path:
+    """The file without its compression, in a temporary folder that ``stack`` removes."""
+    folder = stack.enter_context(TemporaryDirectory(prefix="timemap-"))
+    target = Path(folder) / path.stem
+    with path.open("rb") as packed, target.open("wb") as unpacked:
+        zstandard.ZstdDecompressor().copy_stream(packed, unpacked)
+    return target
+
+
+def _files_of_folder(folder: Path) -> tuple[list[Path], list[str]]:
+    """The storage files of a bag folder: those its metadata names, or all where it has none."""
+    try:
+        names = _listed_names(folder / METADATA)
+    except FileNotFoundError:
+        return _found_files(folder), []
+    except (YAMLError, UnicodeDecodeError, KeyError, TypeError):
+        return _found_files(folder), [f"{METADATA} cannot be read; all files beside it are"]
+    paths, problems = [], []
+    for name in names:
+        # Older rosbag2 names a compressed file without the suffix it gave it.
+        present = [one for one in (folder / name, folder / f"{name}.zstd") if one.exists()]
+        if present:
+            paths.append(present[0])
+        else:
+            problems.append(f"{name} is missing, although {METADATA} names it")
+    if not paths:
+        raise UsageError(f"{folder} holds none of the files that its {METADATA} names")
+    return paths, problems
+
+
+def _listed_names(metadata: Path) -> list[str]:
+    content = YAML(typ="safe").load(metadata.read_text(encoding="utf-8"))
+    return [PurePath(name).name for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
+
+
+def _found_files(folder: Path) -> list[Path]:
+    """The recording in a folder without metadata: one file, or the numbered parts of one recording."""
+    heads = {one: _head(one) for one in sorted(folder.iterdir()) if one.is_file()}
+    paths = [one for one, head in heads.items() if head.startswith(ZSTD_MAGIC) or _reader(head)]
+    if not paths:
+        raise UsageError(f"{folder} holds no recording")
+    if len({_stem(one) for one in paths}) > 1:
+        raise UsageError(
+            f"{folder} holds several recordings; name those you want",
+            hint="\n".join(str(one) for one in paths),
+        )
+    return paths
+
+
+def _stem(path: Path) -> tuple[str, Sequence[str]]:
+    """What the numbered parts of one recording have in common: name without number, suffixes."""
+    name, *suffixes = path.name.split(".")
+    return re.sub(r"_\d+$", "", name), tuple(suffixes)

@@ -1,0 +1,149 @@
+"""Recordings: opened whatever their format, and read as batches."""
+
+from __future__ import annotations
+
+import struct
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+import zstandard
+from mcap.exceptions import McapError
+from rosbags.rosbag2 import ReaderError
+from rosbags.typesys import TypesysError
+
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.logs.bag_records import DamagedBagError
+from timemap_cli.logs.batches import Batch
+from timemap_cli.logs.decode import decode
+from timemap_cli.logs.files import open_files
+from timemap_cli.logs.mcap_chunks import DamagedChunkError
+from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache
+
+FOREIGN_ERRORS = (
+    AssertionError,
+    DamagedBagError,
+    DamagedChunkError,
+    EOFError,
+    KeyError,
+    McapError,
+    OSError,
+    ReaderError,
+    TypesysError,
+    ValueError,
+    struct.error,
+    zstandard.ZstdError,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic of a recording, the type of its messages (``sensor_msgs/msg/LaserScan``) and their number."""
+
+    name: str
+    msgtype: str
+    count: int
+
+
+class Recording:
+    """A recording that is open for reading; close it, or use it in a ``with``.
+
+    ``start_ns``, ``end_ns``: log times of the first and the last message, both 0 where there is none.
+    ``topics`` are in order of name. ``problems`` are sentences about data that is damaged or missing;
+    reading may add to them.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open the recording at ``path``, a file or a folder.
+
+        Raises UsageError where there is none, or a result of ours; TimemapError where it cannot be read.
+        """
+        self.path = path
+        self._files = ExitStack()
+        try:
+            with _translated(path):
+                self._storages, self._problems = open_files(path, self._files)
+        except BaseException:
+            self._files.close()
+            raise
+        self._decoders = DecoderCache()
+        self.format = self._storages[0].format
+        filled = [storage for storage in self._storages if any(one.count for one in storage.connections)]
+        self.start_ns = min((storage.start_ns for storage in filled), default=0)
+        self.end_ns = max((storage.end_ns for storage in filled), default=0)
+        counts: Counter[tuple[str, str]] = Counter()
+        for storage in self._storages:
+            for connection in storage.connections:
+                counts[connection.topic, connection.msgtype] += connection.count
+        self.topics = tuple(Topic(name, msgtype, counts[name, msgtype]) for name, msgtype in sorted(counts))
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What is damaged or missing, as far as it has been noticed."""
+        of_files = [problem for storage in self._storages for problem in storage.problems]
+        return tuple(dict.fromkeys([*self._problems, *of_files]))
+
+    def batches(
+        self, topics: Collection[str], *, start_ns: int | None = None, end_ns: int | None = None
+    ) -> Iterator[list[Batch]]:
+        """Messages of these topics with ``start_ns <= log time < end_ns``, decoded.
+
+        Each list covers the next stretch of log time, of a few MB. A topic that is not in this recording
+        gives nothing. Raises TimemapError where a topic's type or encoding is none that is read.
+        """
+        for topic in self.topics:
+            if topic.name in topics and topic.msgtype not in MESSAGE_TYPES:
+                content = topic.msgtype or "untyped messages"
+                raise UsageError(f"{topic.name} in {self.path} holds {content}, which cannot be used")
+        for storage in self._storages:
+            chosen = {connection.id for connection in storage.connections if connection.topic in topics}
+            if not chosen:
+                continue
+            with _translated(self.path):
+                for parts in storage.stretches(chosen, start_ns, end_ns):
+                    yield decode(parts, self._decoders)
+
+    def close(self) -> None:
+        """Release the files."""
+        self._files.close()
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def open_recordings(paths: Sequence[Path]) -> list[Recording]:
+    """The recordings at these paths, ordered by start time; the caller closes them.
+
+    Raises what ``Recording`` raises, and UsageError where one is given twice; then none is left open.
+    """
+    recordings: list[Recording] = []
+    try:
+        for path in paths:
+            if any(path.resolve() == other.path.resolve() for other in recordings):
+                raise UsageError(f"{path} is given twice")
+            recordings.append(Recording(path))
+    except BaseException:
+        for recording in recordings:
+            recording.close()
+        raise
+    return sorted(recordings, key=lambda recording: recording.start_ns)
+
+
+@contextmanager
+def _translated(path: Path) -> Iterator[None]:
+    """Errors of the libraries that read files become a TimemapError that names the file and the reason."""
+    try:
+        yield
+    except TimemapError:
+        raise
+    except FOREIGN_ERRORS as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise TimemapError(f"{path} cannot be read: {reason or type(error).__name__}") from error
