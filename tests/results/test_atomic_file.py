@@ -1,0 +1,88 @@
+import resource
+import sys
+from pathlib import Path
+
+import pytest
+
+from timemap_cli.errors import ExitCode, TimemapError, UsageError
+from timemap_cli.results.atomic_file import AtomicFile
+
+
+def test_file_appears_at_commit_and_not_before(tmp_path):
+    path = tmp_path / "out.bin"
+    with AtomicFile(path) as out:
+        out.write(b"abc")
+        assert out.tell() == 3
+        assert not path.exists()
+        out.commit()
+        assert path.read_bytes() == b"abc"
+    assert [p.name for p in tmp_path.iterdir()] == ["out.bin"]
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
+def test_nothing_is_left_after_an_exception(tmp_path, error):
+    def fail_midway():
+        with AtomicFile(tmp_path / "out.bin") as out:
+            out.write(b"abc")
+            raise error
+
+    with pytest.raises(error):
+        fail_midway()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_existing_file_is_refused_and_kept(tmp_path):
+    path = tmp_path / "out.bin"
+    path.write_bytes(b"old")
+    with pytest.raises(UsageError, match=r"out\.bin exists already") as caught:
+        AtomicFile(path)
+    assert caught.value.exit_code is ExitCode.USAGE
+    assert "--force" in caught.value.hint
+    assert path.read_bytes() == b"old"
+
+
+def test_file_that_appears_meanwhile_is_kept(tmp_path):
+    path = tmp_path / "out.bin"
+    with AtomicFile(path) as out:
+        path.write_bytes(b"somebody else's")
+        with pytest.raises(UsageError, match="exists already"):
+            out.commit()
+    assert path.read_bytes() == b"somebody else's"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_force_replaces_only_at_commit(tmp_path):
+    path = tmp_path / "out.bin"
+    path.write_bytes(b"old")
+    with AtomicFile(path, force=True) as out:
+        out.write(b"new")
+        assert path.read_bytes() == b"old"
+        out.commit()
+    assert path.read_bytes() == b"new"
+
+
+def test_folder_as_file_and_missing_folder_are_named(tmp_path):
+    with pytest.raises(UsageError, match="it is a folder"):
+        AtomicFile(tmp_path, force=True)
+    with pytest.raises(UsageError, match=r"there is no folder .*nowhere"):
+        AtomicFile(tmp_path / "nowhere" / "out.bin")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc is a folder nobody can write to")
+def test_folder_that_cannot_be_written_to_is_one_clear_error():
+    with pytest.raises(TimemapError, match=r"^cannot write /proc/out\.bin: ") as caught:
+        AtomicFile(Path("/proc/out.bin"))
+    assert caught.value.exit_code is ExitCode.FAILED
+
+
+def test_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path):
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, before[1]))
+    try:
+        with AtomicFile(tmp_path / "out.bin") as out:
+            out.write(bytes(1 << 17))
+            with pytest.raises(TimemapError, match=r"cannot write .*out\.bin: file too large"):
+                out.commit()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert list(tmp_path.iterdir()) == []

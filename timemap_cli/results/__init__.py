@@ -1,0 +1,1 @@
+"""The MCAP result: writing it and reading it back."""

@@ -1,0 +1,92 @@
+"""A file that is there whole or not at all."""
+
+import os
+import secrets
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO, Self
+
+from timemap_cli.errors import TimemapError, UsageError
+
+
+class AtomicFile:
+    """A file for writing that takes its name only when it is complete.
+
+    It is written beside its place under a hidden name; `commit` puts it there. Leaving the context without
+    `commit`, by an exception or Ctrl-C too, removes it.
+
+    Raises UsageError if the path exists and `force` is not given, if it is a folder, or if its folder is
+    missing; TimemapError where the system refuses to write.
+    """
+
+    def __init__(self, path: Path, *, force: bool = False) -> None:
+        self._path = path
+        self._force = force
+        self._refuse_existing()
+        if not path.parent.is_dir():
+            raise UsageError(f"cannot write {path}: there is no folder {path.parent}")
+        self._beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+        try:
+            self._stream: BinaryIO = self._beside.open("xb", buffering=1 << 20)
+        except OSError as error:
+            raise self._failure(error) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.discard()
+
+    def write(self, data: bytes) -> int:
+        """Append bytes; returns their number."""
+        try:
+            return self._stream.write(data)
+        except OSError as error:
+            raise self._failure(error) from error
+
+    def tell(self) -> int:
+        """Bytes so far."""
+        return self._stream.tell()
+
+    def commit(self) -> None:
+        """Make sure that the bytes are on the disk, then give the file its name."""
+        try:
+            self._stream.flush()
+            os.fsync(self._stream.fileno())
+            self._stream.close()
+            self._refuse_existing()
+            self._beside.replace(self._path)
+            _sync_folder(self._path.parent)
+        except OSError as error:
+            raise self._failure(error) from error
+
+    def discard(self) -> None:
+        """Remove what was written, unless it was committed."""
+        with suppress(OSError):  # a full disk refuses the last bytes again; they are not wanted
+            self._stream.close()
+        self._beside.unlink(missing_ok=True)
+
+    def _refuse_existing(self) -> None:
+        if self._path.is_dir():
+            raise UsageError(f"cannot write {self._path}: it is a folder")
+        if self._path.exists() and not self._force:
+            raise UsageError(
+                f"{self._path} exists already", hint="--force replaces it, -o FILE writes somewhere else"
+            )
+
+    def _failure(self, error: OSError) -> TimemapError:
+        return TimemapError(f"cannot write {self._path}: {(error.strerror or str(error)).lower()}")
+
+
+def _sync_folder(folder: Path) -> None:
+    """Have the new name survive a power cut, on systems that can."""
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+    except OSError:
+        return
+    with suppress(OSError):  # some file systems cannot sync a folder; the file itself is safe
+        os.fsync(handle)
+    os.close(handle)

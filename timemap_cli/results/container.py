@@ -1,0 +1,181 @@
+"""The MCAP container of a result: opening it, its records, and the messages of one topic."""
+
+import struct
+from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO, Self, TypeVar
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import SeekingReader
+from mcap.records import Chunk, ChunkIndex
+from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
+from mcap.summary import Summary
+from zstandard import ZstdError
+
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.results import channels
+
+_MAGIC = b"\x89MCAP0\r\n"
+_RECORDINGS = (_MAGIC, b"#ROSBAG", b"SQLite format 3\x00")
+_RECORD = struct.Struct("<BQ")  # opcode, length of what follows
+_MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
+_T = TypeVar("_T")
+
+# What mcap and the decompressors raise when they are given anything else than a whole file.
+_DAMAGE = (McapError, ZstdError, EOFError, ValueError, KeyError, RuntimeError, MemoryError, struct.error)
+
+
+class ResultFile:
+    """A result opened for reading.
+
+    Raises UsageError if there is no such file, or if it is a recording or anything else than a result;
+    TimemapError where it is damaged, then or at any later call.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._stream = _open(path)
+        try:
+            self._reader = SeekingReader(self._stream, validate_crcs=True)
+            self._summary = self._read_summary()
+            self.metadata = self._read_metadata()
+        except BaseException:
+            self._stream.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
+
+    @property
+    def span_ns(self) -> tuple[int, int]:
+        """Log time of the first and the last message."""
+        statistics = self._summary.statistics or self._read_summary().statistics
+        return (statistics.message_start_time, statistics.message_end_time) if statistics else (0, 0)
+
+    def attachment(self, name: str) -> str:
+        """Text of an attachment."""
+        for attachment in self._guarded(lambda: list(self._reader.iter_attachments())):
+            if attachment.name == name:
+                return attachment.data.decode()
+        raise self._damaged(f"{name} is missing")
+
+    def messages(self, topics: Collection[str], until_ns: int | None = None) -> Iterator[tuple[str, bytes]]:
+        """Topic and bytes of the messages of some topics, as written, up to and including a log time."""
+        wanted = self._channels_of(topics)
+        end_ns = self.span_ns[1] if until_ns is None else until_ns
+        for chunk in self._chunks_with(wanted):
+            if chunk.message_start_time <= end_ns:
+                yield from self._messages_of(chunk, wanted, end_ns)
+
+    def last_message(self, topic: str) -> bytes | None:
+        """The last message of a topic, found from the end of the file; None if there is none."""
+        wanted = self._channels_of([topic])
+        for chunk in reversed(self._chunks_with(wanted)):
+            if found := self._messages_of(chunk, wanted, self.span_ns[1]):
+                return found[-1][1]
+        return None
+
+    def _channels_of(self, topics: Collection[str]) -> dict[int, str]:
+        return {c.id: c.topic for c in self._summary.channels.values() if c.topic in topics}
+
+    def _chunks_with(self, wanted: Mapping[int, str]) -> list[ChunkIndex]:
+        """Chunks that hold a message of one of these channels, or do not tell, in the order of writing."""
+        chunks = sorted(self._summary.chunk_indexes, key=lambda c: c.chunk_start_offset)
+        return [c for c in chunks if not c.message_index_offsets or wanted.keys() & c.message_index_offsets]
+
+    def _messages_of(
+        self, index: ChunkIndex, wanted: Mapping[int, str], end_ns: int
+    ) -> list[tuple[str, bytes]]:
+        return self._guarded(lambda: list(_messages(self._load(index), wanted, end_ns)))
+
+    def _load(self, index: ChunkIndex) -> bytes:
+        """A chunk, unpacked and checked."""
+        self._stream.seek(index.chunk_start_offset + _RECORD.size)
+        chunk = Chunk.read(ReadDataStream(self._stream))
+        data, size = get_chunk_data_stream(chunk, validate_crc=True)
+        return data.read(size)
+
+    def _read_summary(self) -> Summary:
+        summary = self._guarded(self._reader.get_summary)
+        if summary is None or summary.statistics is None:
+            raise self._damaged("its end is missing")
+        return summary
+
+    def _read_metadata(self) -> dict[str, str]:
+        names = [index.name for index in self._summary.metadata_indexes]
+        if channels.METADATA not in names:
+            raise _not_a_result(self.path, recording=True)
+        for record in self._guarded(lambda: list(self._reader.iter_metadata())):
+            if record.name == channels.METADATA:
+                return dict(record.metadata)
+        raise self._damaged("its metadata is missing")
+
+    def _guarded(self, read: Callable[[], _T]) -> _T:
+        """Call something that reads, and say in our words what goes wrong."""
+        try:
+            return read()
+        except CRCValidationError as error:
+            raise self._damaged("a checksum does not match") from error
+        except _DAMAGE as error:
+            raise self._damaged("its records do not fit together") from error
+        except OSError as error:
+            raise _unreadable(self.path, error) from error
+
+    def _damaged(self, reason: str) -> TimemapError:
+        return TimemapError(
+            f"{self.path} is damaged: {reason}", hint="make it again with `timemap replay`, or copy it again"
+        )
+
+
+def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[tuple[str, bytes]]:
+    """Messages of some channels in an unpacked chunk, found by stepping from record to record."""
+    place = 0
+    while place < len(chunk):
+        opcode, length = _RECORD.unpack_from(chunk, place)
+        place += _RECORD.size
+        if opcode == Opcode.MESSAGE:
+            channel, _, log_ns, _ = _MESSAGE.unpack_from(chunk, place)
+            if channel in wanted and log_ns <= end_ns:
+                yield wanted[channel], chunk[place + _MESSAGE.size : place + length]
+        place += length
+
+
+def _open(path: Path) -> BinaryIO:
+    if path.is_dir():
+        raise _not_a_result(path, recording=(path / "metadata.yaml").exists())
+    try:
+        stream = path.open("rb")
+    except FileNotFoundError as error:
+        raise UsageError(f"there is no file {path}") from error
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    head = stream.read(16)
+    stream.seek(0)
+    if not head.startswith(_MAGIC):
+        stream.close()
+        raise _not_a_result(path, recording=head.startswith(_RECORDINGS))
+    return stream
+
+
+def _unreadable(path: Path, error: OSError) -> TimemapError:
+    return TimemapError(f"cannot read {path}: {(error.strerror or str(error)).lower()}")
+
+
+def _not_a_result(path: Path, *, recording: bool) -> UsageError:
+    if recording:
+        return UsageError(
+            f"{path} is a recording, not a result of timemap", hint=f"to make one: timemap replay {path}"
+        )
+    return UsageError(f"{path} is not a result of timemap", hint="results are made by `timemap replay`")

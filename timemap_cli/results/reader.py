@@ -1,0 +1,109 @@
+"""Reads a result back: nodes, settings, and the estimates of one level at one time."""
+
+import json
+import struct
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from timemap_cli.errors import TimemapError
+from timemap_cli.model.estimates import Estimate
+from timemap_cli.model.nodes import Node
+from timemap_cli.results import channels
+from timemap_cli.results.channels import LevelTopic
+from timemap_cli.results.container import ResultFile
+from timemap_cli.results.layouts import frame_of, unpack_estimate
+from timemap_cli.results.messages import unpack_nodes
+
+
+class ResultReader:
+    """A result opened for reading, also a context manager.
+
+    Raises UsageError if there is no such file, or if it is a recording or anything else than a result;
+    TimemapError where it is damaged or made by a later timemap, then or at any later call.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = ResultFile(path)
+        try:
+            self.path = path
+            self.metadata = self._file.metadata
+            self._check_format()
+            self.levels = tuple(self.metadata["levels"].split(","))
+            self.angle_bins = int(self.metadata["angle_bins"])
+            self.radius = float(self.metadata["radius"])  # [m]
+            self.map_frame = self.metadata["map_frame"]
+            self.start_ns, self.end_ns = self._file.span_ns
+            self.nodes = self._read_nodes()
+        except (KeyError, ValueError, struct.error) as error:
+            self._file.close()
+            raise self._unreadable() from error
+        except BaseException:
+            self._file.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    @property
+    def config(self) -> str:
+        """The settings of the replay, as YAML."""
+        return self._file.attachment(channels.CONFIG)
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """The report of the replay."""
+        report: dict[str, Any] = json.loads(self._file.attachment(channels.REPORT))
+        return report
+
+    def estimates(self, level: str, until_ns: int | None = None) -> dict[int, Estimate]:
+        """Each node's newest estimate of a level, not later than a time; nodes in order of their number.
+
+        Only this level is read. Raises KeyError for a level that the result does not have.
+        """
+        if level not in self.levels:
+            raise KeyError(level)
+        scans, statuses = LevelTopic.SCAN.of(level), LevelTopic.STATUS.of(level)
+        newest: dict[str, dict[str, bytes]] = {scans: {}, statuses: {}}  # by topic and frame
+        for topic, message in self._file.messages(newest.keys(), until_ns):
+            newest[topic][frame_of(message)] = message
+        try:
+            found = [
+                unpack_estimate(scan, newest[statuses][frame], level, self.angle_bins)
+                for frame, scan in newest[scans].items()
+            ]
+        except (KeyError, ValueError) as error:
+            raise self._unreadable() from error
+        return {e.node: e for e in sorted(found, key=lambda e: e.node)}
+
+    def _read_nodes(self) -> tuple[Node, ...]:
+        """The nodes of the last message that places them: it holds all."""
+        message = self._file.last_message(channels.TF_STATIC)
+        nodes = unpack_nodes(message) if message else ()
+        if len(nodes) != int(self.metadata["nodes"]):
+            raise ValueError("nodes are missing")
+        return nodes
+
+    def _check_format(self) -> None:
+        form = self.metadata.get("format", "none")
+        if form != channels.FORMAT:
+            version = self.metadata.get("version", "unknown")
+            raise TimemapError(
+                f"{self.path} has the format '{form}', this timemap reads '{channels.FORMAT}'",
+                hint=f"it was written by timemap {version}: use that one, or make it again",
+            )
+
+    def _unreadable(self) -> TimemapError:
+        return TimemapError(
+            f"{self.path} is damaged: its parts do not fit together",
+            hint="make it again with `timemap replay`",
+        )
