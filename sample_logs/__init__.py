@@ -1,0 +1,1 @@
+"""A simulated building, robot and laser, and the small recordings made with them."""
