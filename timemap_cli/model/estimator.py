@@ -10,7 +10,7 @@ from timemap_cli.model.chains import best_states
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States, states_from_data
 from timemap_cli.model.virtual_scan import UNSEEN, Ranges
-from timemap_cli.model.vote import shares, vote
+from timemap_cli.model.vote import Shares, shares, vote
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -30,11 +30,15 @@ Estimator = Callable[[Remembered], Estimated]
 
 
 def estimate(memory: Remembered, state_width: float) -> Estimated:
-    """Estimate m nodes of one level; `state_width` [m] as in `states_from_data`."""
-    angle_bins = memory.samples.shape[1]
+    """Estimate m nodes of one level by the vote; `state_width` [m] as in `states_from_data`."""
     states = states_from_data(memory, state_width)
     share = shares(memory, states)
-    best = best_states(vote(memory, states, share), states.rows, angle_bins)
+    best = best_states(vote(memory, states, share), states.rows, memory.samples.shape[1])
+    return assembled(memory, states, share, best)
+
+
+def assembled(memory: Remembered, states: States, share: Shares, best: Ints) -> Estimated:
+    """Put together what the chosen states `best` (rows,) say."""
     support = share.known.copy()
     support[states.rows] = share.states[np.arange(len(best)), best]
     plausibility = 1 - (share.known - support)

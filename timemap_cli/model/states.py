@@ -49,16 +49,22 @@ class States:
         return label
 
 
+def known_ranges(memory: Remembered) -> tuple[Ranges, Ints]:
+    """All ranges (m * angle_bins, 3 * window) [mm] that are known of an angle bin, ascending, and how many."""
+    known = np.concatenate((memory.samples, memory.left, np.roll(memory.right, 1, axis=1)), axis=2)
+    known = known.reshape(-1, known.shape[2])
+    known.sort(axis=1)
+    count = memory.n_samples + memory.n_pairs + np.roll(memory.n_pairs, 1, axis=1)
+    return known, count.reshape(-1)
+
+
 def states_from_data(memory: Remembered, width: float) -> States:
     """Group all that the memory knows of each angle bin, samples and the ends of its pairs, into surfaces.
 
     Ranges farther apart than width / 2 [m] are different surfaces. A group wider than 2 * width is no surface: its
     densest window of one width is cut out, and again from the rests. Beyond STRETCH_FROM all widths grow with range.
     """
-    known = np.concatenate((memory.samples, memory.left, np.roll(memory.right, 1, axis=1)), axis=2)
-    known = known.reshape(-1, known.shape[2])
-    known.sort(axis=1)
-    n_known = (memory.n_samples + memory.n_pairs + np.roll(memory.n_pairs, 1, axis=1)).reshape(-1)
+    known, n_known = known_ranges(memory)
     size = round(width / _UNIT)
     place = _stretched().take(known)
     cut = place[:, 1:] - place[:, :-1] > size // 2

@@ -60,6 +60,11 @@ class TimeMap:
         """All nodes, in the order in which they were made."""
         return self._placement.nodes
 
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """Names of the levels, fastest first."""
+        return tuple(memory.level.name for memory in self._memories)
+
     def learn(self, sweeps: Sweeps) -> Learnt:
         """Give each scan to its node: the fastest level takes every one, slower ones what passes the gate."""
         places = _places(sweeps)

@@ -39,7 +39,7 @@ def virtual_scans(
 def _from_nodes(
     sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int, radius: float
 ) -> tuple[Ranges, Bools]:
-    outline = outlines(sweeps, centres)
+    outline = outlines(sweeps, centres, angle_bins)
     sight = line_of_sight(outline, angle_bins)
     distance = _distances(outline)
     reach = round(radius * 1000)

@@ -1,0 +1,146 @@
+"""Comparing two levels, two times of a level, or two results."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from timemap_cli.changes.compare import compare
+from timemap_cli.changes.difference import Difference
+from timemap_cli.errors import UsageError
+from timemap_cli.model.estimates import Estimate
+from timemap_cli.model.nodes import Node
+from timemap_cli.reports.sides import ComparedSide
+from timemap_cli.results.reader import ResultReader
+from timemap_cli.times import format_time, parse_time
+
+# Nodes that two results share are given with the same numbers; this is far below any node spacing.
+_SAME_PLACE_M = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A difference with its two sides; the numbers of nodes are places in `nodes`."""
+
+    difference: Difference
+    nodes: Sequence[Node]
+    before: ComparedSide
+    after: ComparedSide
+
+
+def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None) -> Comparison:
+    """The slower of two levels against the faster one, at a time, by default the result's end."""
+    with ResultReader(result) as reader:
+        for level in levels:
+            _require_level(reader, result, level)
+        if levels[0] == levels[1]:
+            raise UsageError(f"level {levels[0]} cannot differ from itself", hint=_level_pair(result, reader))
+        slower, faster = sorted(levels, key=reader.levels.index, reverse=True)
+        until_ns = _time_within(reader, result, at or "end")
+        before, after = reader.estimates(slower, until_ns), reader.estimates(faster, until_ns)
+        difference = compare(reader.nodes, before, after, radius=reader.radius)
+        sides = (ComparedSide(str(result), level, until_ns) for level in (slower, faster))
+        return Comparison(difference, tuple(reader.nodes), *sides)
+
+
+def compare_times(result: Path, level: str, times: tuple[str, str]) -> Comparison:
+    """The earlier of two times of a level against the later one: each node's newest estimates until then."""
+    with ResultReader(result) as reader:
+        _require_level(reader, result, level)
+        earlier_ns, later_ns = sorted(_time_within(reader, result, time) for time in times)
+        before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
+        difference = compare(reader.nodes, before, after, radius=reader.radius, only_renewed=True)
+        sides = (ComparedSide(str(result), level, stamp_ns) for stamp_ns in (earlier_ns, later_ns))
+        return Comparison(difference, tuple(reader.nodes), *sides)
+
+
+def compare_results(one: Path, other: Path, level: str) -> Comparison:
+    """The end of the result that ends earlier against the end of the other one; they must share nodes."""
+    with ResultReader(one) as first, ResultReader(other) as second:
+        pairs = [(one, first), (other, second)]
+        for path, reader in pairs:
+            _require_level(reader, path, level)
+        (old_path, old), (new_path, new) = sorted(pairs, key=lambda pair: pair[1].end_ns)
+        _require_same_map(old_path, old, new_path, new)
+        before = old.estimates(level, None)
+        after = _renumbered(new.estimates(level, None), _shared_nodes(old, new))
+        if not after:
+            raise UsageError(
+                f"{old_path} and {new_path} share no nodes",
+                hint=f"timemap replay LOG... --nodes {old_path} -o {new_path} --force",
+            )
+        difference = compare(old.nodes, before, after, radius=old.radius, only_renewed=True)
+        sides = (
+            ComparedSide(str(path), level, reader.end_ns)
+            for path, reader in ((old_path, old), (new_path, new))
+        )
+        return Comparison(difference, tuple(old.nodes), *sides)
+
+
+def newest_result(folder: Path) -> Path:
+    """The newest `*.timemap.mcap` in a folder; UsageError where there is none."""
+    found = sorted(folder.glob("*.timemap.mcap"), key=lambda path: (path.stat().st_mtime_ns, path.name))
+    if not found:
+        raise UsageError("no result given, and no *.timemap.mcap in this folder", hint="timemap replay LOG")
+    return found[-1]
+
+
+def levels_of(result: Path) -> tuple[str, ...]:
+    """Names of a result's levels, fastest first."""
+    with ResultReader(result) as reader:
+        return tuple(reader.levels)
+
+
+def _require_level(reader: ResultReader, result: Path, level: str) -> None:
+    if level not in reader.levels:
+        raise UsageError(
+            f"{result} has no level '{level}', only {', '.join(reader.levels)}",
+            hint=_level_pair(result, reader),
+        )
+
+
+def _level_pair(result: Path, reader: ResultReader) -> str | None:
+    slow_and_next = list(reader.levels)[:-3:-1]
+    return f"timemap diff {result} --level {' '.join(slow_and_next)}" if len(slow_and_next) == 2 else None
+
+
+def _time_within(reader: ResultReader, result: Path, time: str) -> int:
+    stamp_ns = parse_time(time, reader.start_ns, reader.end_ns)
+    if stamp_ns < reader.start_ns:
+        span = f"from {format_time(reader.start_ns)} to {format_time(reader.end_ns)}"
+        raise UsageError(
+            f"{result} knows nothing at {time}: its estimates go {span}",
+            hint="+10s or end-5s, counted from these",
+        )
+    return stamp_ns
+
+
+def _require_same_map(old_path: Path, old: ResultReader, new_path: Path, new: ResultReader) -> None:
+    for what, one, other in (
+        ("map frame", old.map_frame, new.map_frame),
+        ("angle_bins", old.angle_bins, new.angle_bins),
+        ("radius", old.radius, new.radius),
+    ):
+        if one != other:
+            raise UsageError(
+                f"{old_path} and {new_path} cannot be compared: {what} is {one} here and {other} there",
+                hint="replay both with the same settings",
+            )
+
+
+def _shared_nodes(old: ResultReader, new: ResultReader) -> dict[int, int]:
+    """Number in `new` -> number in `old`, of the nodes that stand at the same place."""
+
+    def cell(node: Node) -> tuple[int, int]:
+        return round(node.x / _SAME_PLACE_M), round(node.y / _SAME_PLACE_M)
+
+    numbers = {cell(node): number for number, node in enumerate(old.nodes)}
+    found = ((number, numbers.get(cell(node))) for number, node in enumerate(new.nodes))
+    return {number: shared for number, shared in found if shared is not None}
+
+
+def _renumbered(estimates: Mapping[int, Estimate], numbers: Mapping[int, int]) -> dict[int, Estimate]:
+    return {
+        numbers[node]: replace(estimate, node=numbers[node])
+        for node, estimate in estimates.items()
+        if node in numbers
+    }

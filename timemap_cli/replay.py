@@ -1,0 +1,257 @@
+"""From recordings to a result: the one place where logs, model and results meet."""
+
+import json
+import math
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, Protocol
+
+from timemap_cli.config import LevelSettings, Settings, dump, settings_hash
+from timemap_cli.logs.fingerprint import sha256
+from timemap_cli.logs.recordings import Recording, open_recordings
+from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.survey import Survey, survey
+from timemap_cli.model.estimates import Estimate
+from timemap_cli.model.estimator import Estimator, estimate
+from timemap_cli.model.gate import Gate
+from timemap_cli.model.levels import Level
+from timemap_cli.model.nodes import Node
+from timemap_cli.model.paper_profile import estimate_as_in_paper
+from timemap_cli.model.schedule import Period, Schedule
+from timemap_cli.model.sweeps import Sweeps
+from timemap_cli.model.time_map import TimeMap
+from timemap_cli.results.given_nodes import read_nodes
+from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
+from timemap_cli.times import parse_time
+
+_NOT_LOST = ("outside_time",)  # reasons for dropping a scan that the user asked for
+
+
+class Progress(Protocol):
+    """Watches a replay."""
+
+    def __call__(self, share: float, scans: int) -> None:
+        """Take note that this share of the recordings (0..1) is done and so many scans were read."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReplaySummary:
+    """What a replay did. Every scan read is used or counted under a reason."""
+
+    result: Path
+    nodes: int
+    levels: tuple[str, ...]
+    scans_read: int
+    scans_used: int
+    dropped: Mapping[str, int]  # scans by reason
+    seconds: float
+    warnings: tuple[str, ...]
+    data_lost: bool  # a recording is damaged, or more scans were dropped than max_dropped
+
+
+def replay(
+    logs: Sequence[Path],
+    output: Path,
+    settings: Settings,
+    *,
+    force: bool = False,
+    nodes: Path | None = None,
+    start: str | None = None,
+    end: str | None = None,
+    progress: Progress | None = None,
+) -> ReplaySummary:
+    """Replay recordings in time order through a map of nodes that remember, into a result file.
+
+    `nodes` gives all nodes there will be; `start` (closed) and `end` (open) cut by the scans' stamps. An existing
+    `output` is replaced only with `force`, and only when the new one is complete. Raises TimemapError.
+    """
+    began = time.perf_counter()
+    with ExitStack() as stack:
+        recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
+        plan = survey(recordings, settings)
+        time_map = _time_map(settings, read_nodes(nodes) if nodes else ())
+        result = stack.enter_context(_result(output, settings, plan, force=force))
+        run = _Run(time_map, result, _schedule(settings))
+        span_ns = _span_ns(recordings, start, end)
+        counts = ScanCounts()
+        scans = sweeps(
+            recordings, plan.selection, plan.beams, counts, start_ns=span_ns[0], end_ns=span_ns[1]
+        )
+        for block in scans:
+            if isinstance(block, EndOfRecording):
+                run.end_recording()
+                continue
+            run.replay(block)
+            if progress is not None:
+                progress(_share_done(recordings, block), counts.read)
+        summary = _summary(output, settings, plan, recordings, run, counts, time.perf_counter() - began)
+        result.finish(_metadata(settings, recordings, summary), dump(settings), _report(plan, summary))
+    return summary
+
+
+class _Run:
+    """A replay under way: scans go in, and what they change goes to the result."""
+
+    def __init__(self, time_map: TimeMap, result: ResultWriter, schedule: Schedule) -> None:
+        self.time_map = time_map
+        self.used = 0
+        self.dropped: Counter[str] = Counter()
+        self._result = result
+        self._schedule = schedule
+        self._newest_ns: int | None = None
+        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in time_map.levels}
+
+    def replay(self, block: Sweeps) -> None:
+        for part, estimates_are_due in self._schedule.parts(block.stamps_ns):
+            scans = block.rows(part)
+            if len(scans):
+                learnt = self.time_map.learn(scans)
+                self.used += learnt.used
+                self.dropped["node_not_seen"] += learnt.node_not_seen
+                self.dropped["no_node"] += learnt.no_node
+                if self._newest_ns is None:  # the result's time begins with the first scan, not with the first estimates
+                    self._result.write_nodes(self.time_map.nodes, int(scans.stamps_ns[0]))
+                self._newest_ns = int(scans.stamps_ns[-1])
+            if estimates_are_due:
+                self._write_estimates()
+
+    @property
+    def span_ns(self) -> int:
+        """Time that the result spans so far."""
+        return self._result.span_ns
+
+    def end_recording(self) -> None:
+        self._write_estimates()
+        if self._newest_ns is not None:
+            self._result.write_maps(self._latest, self.time_map.nodes, self._newest_ns)
+
+    def _write_estimates(self) -> None:
+        if self._newest_ns is None:
+            return
+        estimates = self.time_map.estimates()
+        self._result.write_nodes(self.time_map.nodes, self._newest_ns)
+        self._result.write_estimates(estimates, self._newest_ns)
+        for found in estimates:
+            self._latest[found.level][found.node] = found
+
+
+def _time_map(settings: Settings, nodes: Sequence[Node]) -> TimeMap:
+    gate = settings.gate
+    return TimeMap(
+        [_level(level) for level in settings.levels],
+        Gate(gate.min_travel, math.radians(gate.min_turn_deg), round(gate.min_interval_s * 1e9)),
+        _estimator(settings),
+        angle_bins=settings.map.angle_bins,
+        radius=settings.map.radius,
+        spacing=settings.map.node_spacing,
+        seed=settings.seed,
+        nodes=nodes,
+    )
+
+
+def _level(level: LevelSettings) -> Level:
+    return Level(level.name, level.window, level.half_life.value, in_seconds=level.half_life.unit == "s")
+
+
+def _estimator(settings: Settings) -> Estimator:
+    if settings.profile == "paper":
+        return partial(estimate_as_in_paper, range_bin=settings.map.range_bin)
+    return partial(estimate, state_width=settings.map.range_bin)
+
+
+def _schedule(settings: Settings) -> Schedule:
+    every = settings.estimate.every
+    if every.unit == "obs":
+        return Schedule(Period(max(1, round(every.value)), in_scans=True))
+    return Schedule(Period(round(every.value * 1e9), in_scans=False))
+
+
+def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
+    return ResultWriter(
+        output,
+        levels=[level.name for level in settings.levels],
+        angle_bins=settings.map.angle_bins,
+        radius=settings.map.radius,
+        map_frame=plan.selection.map_frame,
+        force=force,
+    )
+
+
+def _span_ns(
+    recordings: Sequence[Recording], start: str | None, end: str | None
+) -> tuple[int | None, int | None]:
+    first, last = min(r.start_ns for r in recordings), max(r.end_ns for r in recordings)
+    return (
+        None if start is None else parse_time(start, first, last),
+        None if end is None else parse_time(end, first, last),
+    )
+
+
+def _share_done(recordings: Sequence[Recording], block: Sweeps) -> float:
+    """Share of the recordings' time that lies before the end of the block."""
+    now_ns = int(block.stamps_ns[-1])
+    done = sum(min(max(now_ns, r.start_ns), r.end_ns) - r.start_ns for r in recordings)
+    return done / max(1, sum(r.end_ns - r.start_ns for r in recordings))
+
+
+def _summary(
+    output: Path,
+    settings: Settings,
+    plan: Survey,
+    recordings: Sequence[Recording],
+    run: _Run,
+    counts: ScanCounts,
+    seconds: float,
+) -> ReplaySummary:
+    dropped = Counter(counts.dropped) + run.dropped
+    lost = sum(count for reason, count in dropped.items() if reason not in _NOT_LOST)
+    wanted = counts.read - sum(dropped[reason] for reason in _NOT_LOST)
+    damage = tuple(f"{r.path}: {problem}" for r in recordings for problem in r.problems)
+    return ReplaySummary(
+        result=output,
+        nodes=len(run.time_map.nodes),
+        levels=run.time_map.levels,
+        scans_read=counts.read,
+        scans_used=run.used,
+        dropped=dict(sorted(dropped.items())),
+        seconds=seconds,
+        warnings=(*plan.selection.warnings, *damage, *_span_warning(run.span_ns)),
+        data_lost=bool(damage) or lost > settings.input.max_dropped * wanted,
+    )
+
+
+def _span_warning(span_ns: int) -> tuple[str, ...]:
+    if span_ns <= VIEWERS_SPAN_NS:
+        return ()
+    return (f"the result spans {span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93",)
+
+
+def _metadata(
+    settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary
+) -> dict[str, str]:
+    """What the result's metadata record says of where it comes from."""
+    inputs = [{"name": r.path.name, "sha256": sha256(r.path)} for r in recordings]
+    return {
+        "inputs": json.dumps(inputs),
+        "settings_sha256": settings_hash(settings),
+        "seed": str(settings.seed),
+        "scans_read": str(summary.scans_read),
+        "scans_used": str(summary.scans_used),
+        "scans_dropped": json.dumps(summary.dropped),
+    }
+
+
+def _report(plan: Survey, summary: ReplaySummary) -> dict[str, Any]:
+    """The summary as the result keeps it: nothing in it depends on where or how fast it was made."""
+    return {
+        "schema": "timemap.replay/1",
+        "nodes": summary.nodes,
+        "levels": list(summary.levels),
+        "scans": {"read": summary.scans_read, "used": summary.scans_used, "dropped": dict(summary.dropped)},
+        "no_return": plan.no_return,
+    }
