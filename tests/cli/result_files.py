@@ -1,0 +1,51 @@
+"""Small results on disk: a round room of 4 m radius, in which a box may stand 2 m from the node."""
+
+from pathlib import Path
+
+import numpy as np
+
+from timemap_cli.model.estimates import Estimate
+from timemap_cli.model.nodes import Node
+from timemap_cli.results.writer import ResultWriter
+
+BINS = 360
+SECOND = 1_000_000_000
+START = 1_700_000_000 * SECOND
+NODE = Node(1.0, 2.0)
+LEVELS = ("short", "mid", "long")
+
+
+def room(level, stamp_ns, *, box: bool, node: int = 0) -> Estimate:
+    """What the level holds; the box stands to the left (+y) of the node, 30 degrees wide."""
+    ranges = np.full(BINS, 4.0, np.float32)
+    if box:
+        ranges[75:105] = 2.0
+    sure = np.ones(BINS, np.float32)
+    return Estimate(node, level, stamp_ns, ranges, sure, sure, np.full(BINS, 7, np.uint16))
+
+
+def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", radius=10.0) -> Path:
+    """Write a result; `boxes` lists (seconds from START, {level: whether it sees the box})."""
+    settings = {"levels": levels, "angle_bins": BINS, "radius": radius, "map_frame": map_frame}
+    with ResultWriter(path, **settings) as writer:
+        for seconds, seen in boxes:
+            stamp_ns = START + seconds * SECOND
+            writer.write_nodes(nodes, stamp_ns)
+            for node in range(len(nodes)):
+                writer.write_estimates(
+                    [room(lv, stamp_ns, box=seen[lv], node=node) for lv in levels], stamp_ns
+                )
+        writer.finish({"nodes": str(len(nodes))}, "seed: 0\n", {})
+    return path
+
+
+def all_levels(box: bool):
+    return dict.fromkeys(LEVELS, box)
+
+
+def written(path: Path) -> Path:
+    """The box appears after 20 s; short and mid adopt it, long does not."""
+    return write(
+        path,
+        [(0, all_levels(False)), (10, all_levels(False)), (20, {"short": True, "mid": True, "long": False})],
+    )

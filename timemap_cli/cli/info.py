@@ -1,0 +1,29 @@
+"""`timemap info`: what is in recordings and what a replay would use."""
+
+from pathlib import Path
+
+import click
+
+from timemap_cli.cli.terminal import Terminal
+
+
+@click.command(short_help="what is in recordings, and what a replay would use")
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="LOG...")
+@click.option(
+    "--config", "config_file", type=click.Path(path_type=Path), metavar="FILE", help="Settings file."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON (schema timemap.info/1).")
+@click.pass_obj
+def info(terminal: Terminal, logs: tuple[Path, ...], config_file: Path | None, as_json: bool) -> None:
+    """Tell what is in the recordings LOG... and what a replay would use.
+
+    Topics, rates, field of view, frames, how much of the time a pose is known, kinds of beams, and problems.
+    LOG is a ROS 1 bag, a ROS 2 bag (folder or single file) or an MCAP file.
+    """
+    from timemap_cli.config import load
+    from timemap_cli.logs.inspect import inspect
+    from timemap_cli.reports.info_json import info_json
+    from timemap_cli.reports.info_text import info_text
+
+    report = inspect(logs, load(config_file))
+    terminal.result(info_json(report) if as_json else info_text(report))

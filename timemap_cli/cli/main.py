@@ -1,0 +1,90 @@
+"""The program as a function of its arguments and its terminal, and its commands."""
+
+import signal
+import sys
+from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from types import FrameType
+from typing import NoReturn
+
+import click
+
+from timemap_cli import __version__
+from timemap_cli.cli.config import config
+from timemap_cli.cli.diff import diff
+from timemap_cli.cli.info import info
+from timemap_cli.cli.replay import replay
+from timemap_cli.cli.terminal import Terminal
+from timemap_cli.errors import ExitCode, TimemapError, UsageError
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name="timemap", message="%(prog)s %(version)s")
+def timemap() -> None:
+    """Replay recorded laser scans through a map that remembers at several time scales.
+
+    It says what changed, where, and at which time scale.
+
+    \b
+      timemap replay monday.mcap tuesday.mcap
+      timemap diff --level long mid
+    """
+
+
+for _command in (info, replay, diff, config):
+    timemap.add_command(_command)
+
+
+def main(args: Sequence[str], terminal: Terminal | None = None) -> int:
+    """Run one command and return its exit code; what a user can mend becomes one error on stderr."""
+    terminal = terminal or Terminal()
+    try:
+        return _exit_code(args, terminal)
+    except TimemapError as error:
+        terminal.error(error)
+        return error.exit_code
+    except OSError as error:
+        terminal.error(TimemapError(_system_trouble(error)))
+        return ExitCode.FAILED
+    except (KeyboardInterrupt, click.Abort):
+        terminal.note("interrupted")
+        return ExitCode.INTERRUPTED
+
+
+def run() -> NoReturn:
+    """Entry of the `timemap` command."""
+    for stream in (sys.stdout, sys.stderr):
+        # A topic's name may hold letters that the terminal's encoding lacks.
+        stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    signal.signal(signal.SIGTERM, _interrupt)
+    sys.exit(main(sys.argv[1:]))
+
+
+def _exit_code(args: Sequence[str], terminal: Terminal) -> int:
+    """The code that the command returned; click's own complaints become a UsageError."""
+    try:
+        with redirect_stdout(terminal.stdout), redirect_stderr(terminal.stderr):
+            code = timemap.main(list(args), prog_name="timemap", standalone_mode=False, obj=terminal)
+    except click.exceptions.NoArgsIsHelpError as error:
+        terminal.note(error.ctx.get_help() if error.ctx else "")
+        return ExitCode.USAGE
+    except click.UsageError as error:
+        command = error.ctx.command_path if error.ctx else "timemap"
+        raise UsageError(_sentence(error.format_message()), hint=f"{command} --help") from error
+    except click.ClickException as error:
+        raise UsageError(_sentence(error.format_message())) from error
+    return int(code or ExitCode.DONE)
+
+
+def _sentence(text: str) -> str:
+    """Click's complaint in the form of our own: no capital at its start, no full stop at its end."""
+    return text[:1].lower() + text[1:].rstrip(".")
+
+
+def _system_trouble(error: OSError) -> str:
+    reason = (error.strerror or str(error)).lower()
+    return f"{error.filename}: {reason}" if error.filename else reason
+
+
+def _interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
