@@ -4,8 +4,8 @@ import json
 import math
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -21,6 +21,7 @@ from timemap_cli.model.estimator import Estimator, estimate
 from timemap_cli.model.gate import Gate
 from timemap_cli.model.levels import Level
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.observer import Observations, Observer
 from timemap_cli.model.paper_profile import estimate_as_in_paper
 from timemap_cli.model.schedule import Period, Schedule
 from timemap_cli.model.sweeps import Sweeps
@@ -74,81 +75,96 @@ def replay(
     with ExitStack() as stack:
         recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
         plan = survey(recordings, settings)
-        time_map = _time_map(settings, read_nodes(nodes) if nodes else ())
+        given = read_nodes(nodes) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        run = _Run(time_map, result, _schedule(settings))
-        span_ns = _span_ns(recordings, start, end)
+        run = _Run(_time_map(settings, given), result, _schedule(settings))
+        start_ns, end_ns = _span_ns(recordings, start, end)
         counts = ScanCounts()
-        scans = sweeps(
-            recordings, plan.selection, plan.beams, counts, start_ns=span_ns[0], end_ns=span_ns[1]
-        )
-        for block in scans:
+        blocks = sweeps(recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns)
+        observed = stack.enter_context(closing(_observed(blocks, _observer(settings, given))))
+        for block in observed:
             if isinstance(block, EndOfRecording):
                 run.end_recording()
                 continue
             run.replay(block)
             if progress is not None:
-                progress(_share_done(recordings, block), counts.read)
+                progress(_share_done(recordings, run.newest_ns), counts.read)
         summary = _summary(output, settings, plan, recordings, run, counts, time.perf_counter() - began)
         result.finish(_metadata(settings, recordings, summary), dump(settings), _report(plan, summary))
     return summary
 
 
+def _observed(
+    blocks: Iterable[Sweeps | EndOfRecording], observer: Observer
+) -> Generator[Observations | EndOfRecording, None, None]:
+    for block in blocks:
+        yield block if isinstance(block, EndOfRecording) else observer.observe(block)
+
+
 class _Run:
-    """A replay under way: scans go in, and what they change goes to the result."""
+    """A replay under way: observations go in, and what they change goes to the result."""
 
     def __init__(self, time_map: TimeMap, result: ResultWriter, schedule: Schedule) -> None:
         self.time_map = time_map
         self.used = 0
         self.dropped: Counter[str] = Counter()
+        self.newest_ns: int | None = None  # stamp of the newest scan learnt
         self._result = result
         self._schedule = schedule
-        self._newest_ns: int | None = None
         self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in time_map.levels}
 
-    def replay(self, block: Sweeps) -> None:
+    def replay(self, block: Observations) -> None:
+        self.used += len(block)
+        self.dropped.update(node_not_seen=block.node_not_seen, no_node=block.no_node)
         for part, estimates_are_due in self._schedule.parts(block.stamps_ns):
-            scans = block.rows(part)
-            if len(scans):
-                learnt = self.time_map.learn(scans)
-                self.used += learnt.used
-                self.dropped["node_not_seen"] += learnt.node_not_seen
-                self.dropped["no_node"] += learnt.no_node
-                if self._newest_ns is None:  # the result's time begins with the first scan, not with the first estimates
-                    self._result.write_nodes(self.time_map.nodes, int(scans.stamps_ns[0]))
-                self._newest_ns = int(scans.stamps_ns[-1])
+            self._learn(block.part(part))
             if estimates_are_due:
                 self._write_estimates()
+
+    def end_recording(self) -> None:
+        self._write_estimates()
+        if self.newest_ns is not None:
+            self._result.write_maps(self._latest, self.time_map.nodes, self.newest_ns)
 
     @property
     def span_ns(self) -> int:
         """Time that the result spans so far."""
         return self._result.span_ns
 
-    def end_recording(self) -> None:
-        self._write_estimates()
-        if self._newest_ns is not None:
-            self._result.write_maps(self._latest, self.time_map.nodes, self._newest_ns)
+    def _learn(self, scans: Observations) -> None:
+        if not len(scans):
+            return
+        self.time_map.learn(scans)
+        if self.newest_ns is None:  # the result's time begins with the first scan, not with the first estimates
+            self._result.write_nodes(self.time_map.nodes, int(scans.stamps_ns[0]))
+        self.newest_ns = int(scans.stamps_ns[-1])
 
     def _write_estimates(self) -> None:
-        if self._newest_ns is None:
+        if self.newest_ns is None:
             return
         estimates = self.time_map.estimates()
-        self._result.write_nodes(self.time_map.nodes, self._newest_ns)
-        self._result.write_estimates(estimates, self._newest_ns)
+        self._result.write_nodes(self.time_map.nodes, self.newest_ns)
+        self._result.write_estimates(estimates, self.newest_ns)
         for found in estimates:
             self._latest[found.level][found.node] = found
 
 
-def _time_map(settings: Settings, nodes: Sequence[Node]) -> TimeMap:
+def _observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
     gate = settings.gate
-    return TimeMap(
-        [_level(level) for level in settings.levels],
+    return Observer(
         Gate(gate.min_travel, math.radians(gate.min_turn_deg), round(gate.min_interval_s * 1e9)),
-        _estimator(settings),
         angle_bins=settings.map.angle_bins,
         radius=settings.map.radius,
         spacing=settings.map.node_spacing,
+        nodes=nodes,
+    )
+
+
+def _time_map(settings: Settings, nodes: Sequence[Node]) -> TimeMap:
+    return TimeMap(
+        [_level(level) for level in settings.levels],
+        _estimator(settings),
+        angle_bins=settings.map.angle_bins,
         seed=settings.seed,
         nodes=nodes,
     )
@@ -192,9 +208,10 @@ def _span_ns(
     )
 
 
-def _share_done(recordings: Sequence[Recording], block: Sweeps) -> float:
-    """Share of the recordings' time that lies before the end of the block."""
-    now_ns = int(block.stamps_ns[-1])
+def _share_done(recordings: Sequence[Recording], now_ns: int | None) -> float:
+    """Share of the recordings' time that is over now."""
+    if now_ns is None:
+        return 0.0
     done = sum(min(max(now_ns, r.start_ns), r.end_ns) - r.start_ns for r in recordings)
     return done / max(1, sum(r.end_ns - r.start_ns for r in recordings))
 
@@ -220,7 +237,7 @@ def _summary(
         scans_used=run.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*plan.selection.warnings, *damage, *_span_warning(run.span_ns)),
+        warnings=(*plan.selection.warnings, *plan.problems, *damage, *_span_warning(run.span_ns)),
         data_lost=bool(damage) or lost > settings.input.max_dropped * wanted,
     )
 

@@ -59,8 +59,29 @@ def _search(scores: Scores, chain: Ints, link: Ints) -> Ints:
     """Best states (n,) of rows in order, each linked to the next only where they are neighbours."""
     exists = scores.unary[chain] > IMPOSSIBLE
     size = int(exists.sum(axis=1).max())
-    pairwise = np.zeros((len(chain), size, size), np.int64)
     edge = link[chain]
+    place, length = _aligned(edge < 0)
+    unary = np.full((length, size), IMPOSSIBLE)
+    unary[:, 0] = 0
+    unary[place] = scores.unary[chain, :size]
+    pairwise = np.zeros((length, size, size), np.int64)
     linked = np.flatnonzero(edge >= 0)
-    pairwise[linked] = scores.pairwise[edge[linked], :size, :size]
-    return best_closed_path(scores.unary[chain, :size], pairwise)[0]
+    pairwise[place[linked]] = scores.pairwise[edge[linked], :size, :size]
+    return best_closed_path(unary, pairwise)[0][place]
+
+
+def _aligned(ends: npt.NDArray[np.bool_]) -> tuple[Ints, int]:
+    """Places (n,) for the rows of open chains, of which `ends` tells the last rows; and how many places there are.
+
+    Each chain begins at a multiple of its length, rounded up to a power of two. So it is always joined in the same
+    halves, and between paths with the same score it takes the same one in any company.
+    """
+    last = np.flatnonzero(ends)
+    if not len(last):
+        return np.arange(len(ends)), len(ends)
+    length = np.diff(last, prepend=-1)
+    room = np.int64(1) << np.frexp(length - 1)[1].astype(np.int64)
+    order = np.argsort(-room, kind="stable")
+    start = np.empty_like(room)
+    start[order] = np.cumsum(room[order]) - room[order]
+    return np.arange(len(ends)) + np.repeat(start - (last + 1 - length), length), int(room.sum())

@@ -60,18 +60,19 @@ def _measured(memory: Remembered, states: States, best: Ints) -> Ranges:
     padded = np.append(states.starts, np.full((len(best), 1), UNSEEN, np.uint16), axis=1)
     high = padded[np.arange(len(best)), best + 1]
     samples = np.sort(memory.samples.reshape(-1, memory.window), axis=1)
-    middle, none = _lower_median(samples, memory.n_samples.reshape(-1), states.rows, low, high)
-    known, _ = _lower_median(states.known, states.n_known, states.rows, low, high)
-    return np.where(none, known, middle)
+    n_samples = memory.n_samples.reshape(-1)
+    begin, end = np.zeros_like(n_samples), n_samples.copy()
+    begin[states.rows], end[states.rows] = _between(samples[states.rows], low, high)
+    median = samples[np.arange(len(samples)), np.maximum(begin + end - 1, 0) // 2]
+    lost = np.flatnonzero(begin[states.rows] == end[states.rows])
+    begin, end = _between(states.known[states.rows[lost]], low[lost], high[lost])
+    median[states.rows[lost]] = states.known[states.rows[lost], (begin + end - 1) // 2]
+    alone = np.flatnonzero((n_samples == 0) & (states.n_known > 0))
+    alone = np.setdiff1d(alone, states.rows, assume_unique=True)
+    median[alone] = states.known[alone, (states.n_known[alone] - 1) // 2]
+    return median
 
 
-def _lower_median(
-    ordered: Ranges, count: Ints, rows: Ints, low: Ranges, high: Ranges
-) -> tuple[Ranges, npt.NDArray[np.bool_]]:
-    """Lower median of the first `count` values of each row, in `rows` of those in [low, high); and where are none."""
-    begin, end = np.zeros_like(count), count.copy()
-    some = ordered[rows]
-    begin[rows] = (some < low[:, None]).sum(axis=1)
-    end[rows] = (some < high[:, None]).sum(axis=1)
-    middle = np.maximum(begin + end - 1, 0) // 2
-    return ordered[np.arange(len(ordered)), middle], end == begin
+def _between(ordered: Ranges, low: Ranges, high: Ranges) -> tuple[Ints, Ints]:
+    """First place, and one past the last, of each row's values in [low, high)."""
+    return (ordered < low[:, None]).sum(axis=1), (ordered < high[:, None]).sum(axis=1)

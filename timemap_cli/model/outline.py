@@ -11,6 +11,7 @@ from timemap_cli.model.sweeps import Sweeps
 Poses = npt.NDArray[np.float64]
 
 BLIND_MARGIN = 0.1  # [m] by which the disc where the robot stands reaches beyond the node's centre
+LARGEST_DISC = 2.5  # [m] a node farther away than this must have been seen
 BRIDGED_RAYS = 2  # as many rays in a row without evidence do not open the outline
 
 
@@ -25,6 +26,7 @@ class Outlines:
     x: Floats  # (n, vertices + 1) [m] relative to the node's centre, map axes
     y: Floats  # (n, vertices + 1) [m]
     hit: Bools  # (n, vertices + 1) vertex is a measured surface
+    disc: Bools  # (n, vertices + 1) vertex is on the disc: nothing was seen in its direction
     turn: Floats  # (n, 1) +1: vertices run counter-clockwise round the robot, -1: clockwise
 
 
@@ -34,20 +36,21 @@ def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int) 
     fan = rays(sweeps, angle_bins)
     origin = first[:, :2, 3] - centres
     missing = np.isnan(fan.length)
-    blind = np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN
+    blind = np.minimum(np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN, LARGEST_DISC)
     length = np.where(missing, blind.astype(np.float32)[:, None], fan.length)
     moves = not np.array_equal(first, last)
     if moves:
         length *= _chord_correction(first, last, fan.progress)
     x, y = (_place(first[:, a], (last - first)[:, a], origin[:, a], fan, length, moves) for a in (0, 1))
-    hit = np.empty(x.shape, np.bool_)
+    hit, disc = np.empty(x.shape, np.bool_), np.empty(x.shape, np.bool_)
     hit[:, :-1] = fan.hit
-    _bridge(x, y, hit, missing)
-    for vertices in (x, y, hit):
+    disc[:, :-1] = missing
+    _bridge(x, y, hit, disc, missing)
+    for vertices in (x, y, hit, disc):
         vertices[:, -1] = vertices[:, 0]
     upright = first[:, 0, 0] * first[:, 1, 1] - first[:, 0, 1] * first[:, 1, 0] > 0
     turn = np.where(upright == fan.counter_clockwise, np.float32(1), np.float32(-1))
-    return Outlines(x, y, hit, turn[:, None])
+    return Outlines(x, y, hit, disc, turn[:, None])
 
 
 def _chord_correction(first: Poses, last: Poses, progress: Floats) -> Floats:
@@ -89,7 +92,7 @@ def _place(
     return out
 
 
-def _bridge(x: Floats, y: Floats, hit: Bools, missing: Bools) -> None:
+def _bridge(x: Floats, y: Floats, hit: Bools, disc: Bools, missing: Bools) -> None:
     """Lay vertices of short runs without evidence onto the vertex before them, in place."""
     lone = missing[:, 1:-1] & ~(missing[:, :-2] & missing[:, 2:])
     if not lone.any():
@@ -101,5 +104,5 @@ def _bridge(x: Floats, y: Floats, hit: Bools, missing: Bools) -> None:
     short = missing & (after - before - 1 <= BRIDGED_RAYS) & (before >= 0) & (after < width)
     row, column = np.nonzero(short)
     source = before[row, column]
-    for vertex in (x, y, hit):
+    for vertex in (x, y, hit, disc):
         vertex[row, column] = vertex[row, source]

@@ -40,10 +40,10 @@ class States:
         """(rows, states) which states there are."""
         return self.starts < UNSEEN
 
-    def labels(self, values: Ranges, rows: Ints | slice = slice(None)) -> npt.NDArray[np.int64]:
+    def labels(self, values: Ranges, rows: Ints | slice = slice(None)) -> npt.NDArray[np.uint8]:
         """Number of the state of each value (rows, k); UNSEEN gives the last number."""
         starts = self.starts[rows]
-        label = np.zeros(values.shape, np.int64)
+        label = np.zeros(values.shape, np.uint8)
         for state in range(1, starts.shape[1]):
             label += values >= starts[:, state, None]
         return label
@@ -66,12 +66,27 @@ def states_from_data(memory: Remembered, width: float) -> States:
     """
     known, n_known = known_ranges(memory)
     size = round(width / _UNIT)
-    place = _stretched().take(known)
+    candidates = _may_split(known, n_known, size)
+    place = _stretched().take(known[candidates])
     cut = place[:, 1:] - place[:, :-1] > size // 2
-    cut &= known[:, 1:] < UNSEEN
-    _cut_wide_groups(cut, place, n_known, size)
-    rows = np.flatnonzero(cut.any(axis=1))
-    return States(rows, _starts(known[rows], cut[rows], place[rows]), known, n_known)
+    cut &= known[candidates, 1:] < UNSEEN
+    _cut_wide_groups(cut, place, n_known[candidates], size)
+    split = np.flatnonzero(cut.any(axis=1))
+    rows = candidates[split]
+    return States(rows, _starts(known[rows], cut[split], place[split]), known, n_known)
+
+
+def _may_split(known: Ranges, n_known: Ints, size: int) -> Ints:
+    """Angle bins that may hold more than one surface; most do not, and this tells it without the stretched scale.
+
+    That scale grows ever slower with range: two ranges are at most as far apart on it as the slope at the nearest makes them.
+    """
+    nearest, farthest = known[:, 0], known[np.arange(len(known)), np.maximum(n_known, 1) - 1]
+    widening = np.maximum(1, nearest / (STRETCH_FROM * 1000))
+    gap = np.minimum(np.floor(widening * (size // 2 - 1) * _UNIT * 1000), CLEAR).astype(np.uint16)
+    wide = known[:, 1:] - known[:, :-1] > gap[:, None]
+    wide &= known[:, 1:] < UNSEEN
+    return np.flatnonzero(wide.any(axis=1) | (farthest - nearest > widening * (2 * size - 1) * _UNIT * 1000))
 
 
 def _starts(known: Ranges, cut: Bools, place: Stretched) -> Ranges:

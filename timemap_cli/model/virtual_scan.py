@@ -1,5 +1,7 @@
 """From a scan to what it would have been from a node's centre (paper, eq. 1 and 2, and what they leave open)."""
 
+from itertools import pairwise
+
 import numpy as np
 import numpy.typing as npt
 
@@ -17,7 +19,7 @@ HOLE_EDGE = np.float32(0.2)  # [m] two hits no farther apart than this are one s
 Ranges = npt.NDArray[np.uint16]
 Bools = npt.NDArray[np.bool_]
 
-_BLOCK = 24  # scans at a time, so that the work stays in the processor's cache
+_BLOCK = 48  # scans at a time at most, so that the work stays in the processor's cache
 
 
 def virtual_scans(
@@ -30,8 +32,10 @@ def virtual_scans(
     """
     ranges = np.empty((len(sweeps), angle_bins), np.uint16)
     judged = np.empty(len(sweeps), np.bool_)
-    for start in range(0, len(sweeps), _BLOCK):
-        part = slice(start, start + _BLOCK)
+    blocks = -(-len(sweeps) // _BLOCK)
+    borders = [len(sweeps) * i // max(1, blocks) for i in range(blocks + 1)]
+    for start, stop in pairwise(borders):
+        part = slice(start, stop)
         ranges[part], judged[part] = _from_nodes(sweeps.rows(part), centres[part], angle_bins, radius)
     return ranges, judged
 
@@ -45,7 +49,7 @@ def _from_nodes(
     reach = round(radius * 1000)
     ranges = _nearest_hits(outline, sight, distance, angle_bins, reach)
     _close_holes(ranges, outline, sight, distance, reach)
-    ranges[(ranges == UNSEEN) & _clear(sight, reach)] = CLEAR
+    ranges[(ranges == UNSEEN) & _clear(outline, sight, distance, reach)] = CLEAR
     ranges[~sight.encloses] = UNSEEN
     return ranges, sight.encloses
 
@@ -112,8 +116,12 @@ def _close_holes(
     ranges[row[closed], column[closed]] = nearer[closed].astype(np.uint16)
 
 
-def _clear(sight: Sight, reach: int) -> Bools:
-    """Angle bins (n, angle_bins) of which both borders and the centre are free beyond the radius."""
+def _clear(outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int) -> Bools:
+    """Angle bins (n, angle_bins) of which both borders and the centre were seen free beyond the radius."""
     far = sight.free > reach
+    if (outline.disc & (distance > reach)).any():  # else no ray ends so far away on the robot's own disc
+        row, ray = np.nonzero(far)
+        edge = sight.edge[row, ray].astype(np.int64)
+        far[row, ray] = ~(outline.disc[row, edge] & outline.disc[row, edge + 1])
     border = far[:, ::2]
     return np.asarray(far[:, 1::2] & border & np.roll(border, -1, axis=1))

@@ -42,14 +42,13 @@ class Shares:
 
 def shares(memory: Remembered, states: States) -> Shares:
     """Shares of the window, each sample weighted by what the level would have forgotten had it looked."""
-    nodes, angle_bins, window = memory.samples.shape
-    table = _freshness(window)
-    weight = table.take(np.minimum(memory.ages, len(table) - 1)).reshape(-1, window)
+    angle_bins, window = memory.samples.shape[1:]
+    weight = _freshness(window).take(memory.ages, mode="clip").reshape(-1, window)
     samples = memory.samples.reshape(-1, window)
     weight *= samples < UNSEEN
     full = np.maximum(1, np.minimum(memory.taken, window)) * float(SCALE)
     full = np.repeat(full, angle_bins)
-    known = weight.sum(axis=1) / full
+    known = weight.sum(axis=1, dtype=np.int32) / full
     per_state = _sums(states.labels(samples[states.rows]), weight[states.rows], states.starts.shape[1])
     return Shares(known, per_state / full[states.rows, None])
 
@@ -87,12 +86,12 @@ def pair_counts(memory: Remembered, states: States, edges: Ints) -> Ints:
     flat = states.rows[edges[:, 0]]
     left = memory.left.reshape(-1, memory.window)[flat]
     right = memory.right.reshape(-1, memory.window)[flat]
-    label = states.labels(left, edges[:, 0]) * size + states.labels(right, edges[:, 1])
-    ones = (left < UNSEEN).astype(np.int64)
-    return _sums(label, ones, size * size).reshape(-1, size, size)
+    label = states.labels(left, edges[:, 0]).astype(np.int64) * size
+    label += states.labels(right, edges[:, 1])
+    return _sums(label, left < UNSEEN, size * size).reshape(-1, size, size)
 
 
-def _sums(labels: Ints, weights: Ints, size: int) -> Ints:
+def _sums(labels: npt.NDArray[np.integer], weights: npt.NDArray[np.generic], size: int) -> Ints:
     """Sum of the weights of each label 0 .. size - 1 in each row (rows, size); exact below 2^53."""
     labels = labels + np.arange(len(labels))[:, None] * size
     sums = np.bincount(labels.ravel(), weights.ravel(), len(labels) * size)
@@ -100,13 +99,13 @@ def _sums(labels: Ints, weights: Ints, size: int) -> Ints:
 
 
 @cache
-def _freshness(window: int) -> Ints:
+def _freshness(window: int) -> npt.NDArray[np.int32]:
     """Weight of a sample by the scans taken since that did not see its angle bin [1 / SCALE]."""
     kept = 1 - 1 / window
     weights = [1.0]
     while weights[-1] > OLDEST:
         weights.append(weights[-1] * kept)
-    return np.array([round(max(OLDEST, weight) * SCALE) for weight in weights], np.int64)
+    return np.array([round(max(OLDEST, weight) * SCALE) for weight in weights], np.int32)
 
 
 def _whole(scores: Floats) -> Ints:

@@ -1,0 +1,74 @@
+from dataclasses import replace
+
+import pytest
+
+from tests.reports.inspections import INTEL, LOG, SCAN, STUCK
+from timemap_cli.logs.beams import BeamCounts
+from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.reports.info_text import info_text
+
+
+def test_the_whole_text():
+    assert info_text(INTEL).splitlines() == [
+        "intel.mcap: ROS 2 mcap, 44 min 11 s from 2000-12-05T21:48:09.905Z",
+        "  /scan     910 scans at 0.299 Hz in 'laser'",
+        "            180 beams over 179 deg, 0.1 to 80 m",
+        "            beams: 97.5 % hit, 2.55 % no return",
+        "            no return: 81.83 m",
+        "            905 of 910 scans have a pose",
+        "  /pose     910 PoseWithCovarianceStamped in 'map'",
+        "  /odom     2639 Odometry of 'base_link' in 'odom'",
+        "  /tf       910 TFMessage",
+        "            and 2 other topics",
+        "  problems  /scan: stamps step back once, by up to 0.86 s",
+        "            /scan: 1 gap without scans, up to 20.1 s",
+        "",
+        "A replay would use",
+        "  scans      /scan",
+        "  map frame  map",
+        "  poses      tf (map > base_link > laser)",
+        "  no return  no evidence: 67 % of those sampled pass through something solid (glass, mirrors, black surfaces)",
+        "  warning    odometry drifts",
+        "  problem    b.mcap has no scans of /scan",
+    ]
+
+
+def test_it_says_why_a_replay_would_stop_and_what_to_try():
+    assert info_text(STUCK).splitlines()[-3:] == [
+        "A replay would stop: 2 scan topics and none named: /a, /b",
+        "  try: --scan-topic /a",
+        "  try: --scan-topic /b",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("found", "no_return", "text"),
+    [
+        (
+            MissingReturns(605, 0.145),
+            "clear",
+            "free space: 14 % of those sampled pass through something solid",
+        ),
+        (MissingReturns(12, None), "clear", "free space; 12 in the sample, too few to test"),
+        (MissingReturns(0, None), "clear", "there is none"),
+        (None, "clear", "free space, as set"),
+        (None, "ignore", "no evidence, as set"),
+    ],
+)
+def test_what_missing_returns_count_as(found, no_return, text):
+    tests = {"/scan": found} if found else {}
+    told = info_text(replace(INTEL, missing_returns=tests, no_return=no_return))
+    assert f"  no return  {text}\n" in told
+
+
+def test_small_shares_are_not_rounded_to_nothing_nor_large_ones_to_all():
+    beams = BeamCounts(hit=1_000_000, no_return=1, invalid=2)
+    told = info_text(replace(INTEL, logs=(replace(LOG, scans=(replace(SCAN, beams=beams),)),)))
+    assert "beams: > 99.9 % hit, < 0.1 % no return, < 0.1 % invalid" in told
+
+
+def test_a_topic_whose_scans_cannot_be_read_is_told():
+    scan = replace(SCAN, count=0, beams=BeamCounts(), with_pose=0)
+    assert "  /scan     no scan that can be read\n" in info_text(
+        replace(INTEL, logs=(replace(LOG, scans=(scan,)),))
+    )

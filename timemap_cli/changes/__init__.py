@@ -1,0 +1,1 @@
+"""Estimates in, differences out: pure NumPy, no files and no clock."""

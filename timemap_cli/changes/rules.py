@@ -1,0 +1,31 @@
+"""What counts as a change between two estimates."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """Limits of the comparison, with the reason of each default.
+
+    They were measured on real recordings of offices and corridors with a scanner at 1 degree and poses good
+    to some centimetres: stricter limits lose real objects sooner than they lose false ones.
+    """
+
+    min_samples: int = 3  # fewer remembered ranges are one look, perhaps at somebody passing
+    min_support: float = 0.5  # share of what is known; 0.75 already loses most objects that were really moved
+    min_step_m: float = 0.2  # poses off by 0.15 m must not show; 0.1 m gave half as many false reports again
+    min_step_share: float = 0.03  # of the nearer range: a heading error of 1-2 degrees at a slanted wall
+    clear_margin: float = 2.0  # in steps: a surface so close to the radius may be clear at the next look
+    edge_deg: float = 2.0  # a range shown this close in bearing was only seen round an edge
+    max_gap_bins: int = 1  # a coarse scanner leaves single bins empty
+    max_jump_m: float = 0.5  # a farther step along one sector is another thing behind
+    min_bins: int = 3  # one or two bins are mixed pixels and thin edges
+    min_arc_m: float = 0.15  # width of a leg or post; 0.3 m loses boxes and bins
+    link_m: float = 0.3  # parts of one thing seen from several nodes, poses included
+    min_thing_bins: int = (
+        5  # over all nodes: what stands near a path is seen by several, or by one in many bins
+    )
+    vote_samples: int = 5  # a node that looked less often has no say about a neighbour's report
+    vote_share: float = 0.5  # of the nodes that can tell; to ask for two loses most, which only one node saw
+    move_max_m: float = 1.0  # beyond a metre another thing of that shape is as likely
+    move_shape_m: float = 0.1  # outlines farther apart than bin spacing and noise explain are two shapes

@@ -1,0 +1,188 @@
+"""Scans waiting until all that may precede them has come: stamp order within a window of header time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from timemap_cli.logs.batches import Float32s, Float64s, Int64s, ScanBatch
+
+WINDOW_NS = 10_000_000_000
+# A sweep longer than this is a driver's mistake (seconds for milliseconds), not a scanner.
+MAX_SWEEP_NS = 2_000_000_000
+BEGINNING_NS = -(2**62)  # before all stamps
+
+Entries = NDArray[np.void]
+_ENTRY = np.dtype(
+    [
+        ("stamp", np.int64),
+        ("log", np.int64),
+        ("sweep", np.int64),  # [ns] from first to last beam
+        ("recording", np.int64),
+        ("topic", np.int64),  # rank among the chosen topics
+        ("frame", np.int64),  # code of the scan's frame
+        ("kind", np.int64),  # code of what scans of one block have in common
+        ("chunk", np.int64),  # where the ranges are
+        ("row", np.int64),
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """What the scans of one block have in common."""
+
+    recording: int
+    angle_min: float  # [rad]
+    angle_increment: float  # [rad]
+    count: int
+    clear_range: float  # [m]
+
+    def bearings(self) -> Float64s:
+        """Bearings (count,) [rad] of the beams in the scan's frame."""
+        return _bearings(self.angle_min, self.angle_increment, self.count)
+
+
+def sweep_durations(batch: ScanBatch) -> Int64s:
+    """Time (n,) [ns] from the first to the last beam of each scan, 0 where the recording's number is none."""
+    seconds = batch.time_increment.astype(np.float64) * max(batch.layout.count - 1, 0)
+    believable = np.abs(seconds) <= MAX_SWEEP_NS / 1e9
+    return np.rint(np.where(believable, seconds, 0.0) * 1e9).astype(np.int64)
+
+
+class ScanWindow:
+    """Scans on their way from log order to stamp order.
+
+    The window's clock is the newest stamp of the scans that have arrived. Whatever is more than 10 s behind
+    the clock when it arrives is late; whatever falls more than 10 s behind is ready. How often scans are
+    taken out makes no difference to their order, nor to which are late. Scans outside ``span_ns`` (end
+    exclusive) move the clock but do not come out.
+    """
+
+    def __init__(self, span_ns: tuple[int, int]) -> None:
+        self._span_ns = span_ns
+        self.clock_ns = BEGINNING_NS
+        self.nbytes = 0  # of the ranges held
+        self._floor_ns = BEGINNING_NS
+        self._coming = np.empty(0, _ENTRY)
+        self._waiting = np.empty(0, _ENTRY)
+        self._chunks: dict[int, tuple[Float32s, int]] = {}  # ranges, code of their kind
+        self._chunk_count = 0
+        self._kinds: dict[int, Kind] = {}
+        self._kind_codes: dict[Kind, int] = {}
+
+    def add(self, batch: ScanBatch, ranges: Float32s, kind: Kind, *, topic: int, frame: int) -> None:
+        """Take in scans with their resolved ranges (n, beams); they arrive once ``arrive`` gets so far."""
+        entries = np.empty(len(ranges), _ENTRY)
+        entries["stamp"], entries["log"] = batch.stamps_ns, batch.log_ns
+        entries["sweep"] = sweep_durations(batch)
+        code = self._kind_codes.setdefault(kind, self._chunk_count)
+        self._kinds[code] = kind
+        entries["recording"], entries["topic"] = kind.recording, topic
+        entries["frame"], entries["kind"] = frame, code
+        entries["chunk"], entries["row"] = self._chunk_count, np.arange(len(ranges))
+        self._chunks[self._chunk_count] = ranges, code
+        self._chunk_count += 1
+        self.nbytes += ranges.nbytes
+        self._coming = np.concatenate([self._coming, entries])
+
+    def arrive(self, until_ns: int) -> tuple[int, int]:
+        """Let in the scans recorded up to a log time, in log order.
+
+        Return how many came too late and how many lie outside the time span.
+        """
+        here = self._coming["log"] <= until_ns
+        arriving, self._coming = self._coming[here], self._coming[~here]
+        if not len(arriving):
+            return 0, 0
+        arriving = _ordered(arriving, "log")
+        clock = np.maximum.accumulate(np.append(self.clock_ns, arriving["stamp"]))
+        self.clock_ns = int(clock[-1])
+        stamps = arriving["stamp"]
+        outside = (stamps < self._span_ns[0]) | (stamps >= self._span_ns[1])
+        late = ((stamps < clock[:-1] - WINDOW_NS) | (stamps <= self._floor_ns)) & ~outside
+        self._waiting = np.concatenate([self._waiting, arriving[~late & ~outside]])
+        return int(np.count_nonzero(late)), int(np.count_nonzero(outside))
+
+    @property
+    def ready_before_ns(self) -> int:
+        """Scans with a smaller stamp are ready."""
+        return self.clock_ns - WINDOW_NS
+
+    @property
+    def oldest_ns(self) -> int:
+        """No scan that comes out later has a smaller stamp, by what has arrived so far."""
+        waiting = int(self._waiting["stamp"].min(initial=self.clock_ns))
+        return min(waiting, self.ready_before_ns)
+
+    def count_ready(self) -> int:
+        """How many scans could be taken out."""
+        return int(np.count_nonzero(self._waiting["stamp"] < self.ready_before_ns))
+
+    def take_ready(self) -> Entries:
+        """Take out the scans that are ready, in stamp order."""
+        ready = self._waiting["stamp"] < self.ready_before_ns
+        taken, self._waiting = self._waiting[ready], self._waiting[~ready]
+        return _ordered(taken, "stamp")
+
+    def take_all(self) -> Entries:
+        """Take out all scans that have arrived, in stamp order; none that comes later may precede them."""
+        taken = _ordered(self._waiting, "stamp")
+        self._waiting = np.empty(0, _ENTRY)
+        if len(taken):
+            self._floor_ns = max(self._floor_ns, int(taken["stamp"][-1]))
+        return taken
+
+    def gather(self, entries: Entries) -> Float32s:
+        """Ranges (n, beams) of scans of one kind, as ``add`` got them."""
+        step = (np.diff(entries["chunk"]) != 0) | (np.diff(entries["row"]) != 1)
+        starts = [0, *(np.flatnonzero(step) + 1).tolist(), len(entries)]
+        chunks, rows = entries["chunk"].tolist(), entries["row"].tolist()
+        pieces = [
+            self._chunks[chunks[begin]][0][rows[begin] : rows[begin] + end - begin]
+            for begin, end in pairwise(starts)
+        ]
+        return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
+
+    def release(self) -> None:
+        """Let go of the ranges of scans that are neither coming nor waiting; ``gather`` them first."""
+        needed = {*self._coming["chunk"].tolist(), *self._waiting["chunk"].tolist()}
+        for chunk in [chunk for chunk in self._chunks if chunk not in needed]:
+            self.nbytes -= self._chunks.pop(chunk)[0].nbytes
+        used = {code for _, code in self._chunks.values()}
+        self._kinds = {code: kind for code, kind in self._kinds.items() if code in used}
+        self._kind_codes = {kind: code for code, kind in self._kinds.items()}
+
+    def cut(self, entries: Entries, most_scans: int, most_bytes: int) -> list[tuple[Kind, slice]]:
+        """Cut into runs of one kind, none longer than so many scans or bytes of ranges (but one scan)."""
+        borders = [0, *(np.flatnonzero(np.diff(entries["kind"])) + 1).tolist(), len(entries)]
+        found = []
+        for begin, end in pairwise(borders if len(entries) else ()):
+            kind = self._kinds[int(entries["kind"][begin])]
+            most = max(1, min(most_scans, most_bytes // (4 * kind.count)))
+            found += [(kind, slice(at, min(at + most, end))) for at in range(begin, end, most)]
+        return found
+
+
+def repeats(entries: Entries) -> NDArray[np.bool_]:
+    """Which scans (n,), in stamp order, have the same topic and stamp as the one before."""
+    same = (np.diff(entries["stamp"]) == 0) & (np.diff(entries["topic"]) == 0)
+    return np.append(False, same) if len(entries) else np.empty(0, bool)
+
+
+@lru_cache(maxsize=16)
+def _bearings(angle_min: float, angle_increment: float, count: int) -> Float64s:
+    bearings: Float64s = angle_min + np.arange(count, dtype=np.float64) * angle_increment
+    bearings.flags.writeable = False
+    return bearings
+
+
+def _ordered(entries: Entries, by: str) -> Entries:
+    """Sort by time; what is equal, by topic, recording and the order in which it was read."""
+    keys: list[Any] = [entries[name] for name in ("row", "chunk", "recording", "topic", by)]
+    return entries[np.lexsort(keys)]

@@ -1,0 +1,287 @@
+"""Which scan topics, map frame and poses a replay uses, and what to say where that is not clear."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from timemap_cli.config import InputSettings
+from timemap_cli.errors import UsageError
+from timemap_cli.logs.frames import Frames
+from timemap_cli.logs.poses import TF
+
+SCAN_TYPE = "sensor_msgs/msg/LaserScan"
+CLOUD_TYPES = (
+    "sensor_msgs/msg/PointCloud2",
+    "sensor_msgs/msg/PointCloud",
+    "sensor_msgs/msg/MultiEchoLaserScan",
+)
+POSE_TYPES = (
+    "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "geometry_msgs/msg/PoseStamped",
+    "nav_msgs/msg/Odometry",
+)
+DEFAULT_MAP_FRAME = "map"
+# Poses that somebody wants or guesses, not poses of the robot.
+WISHES = ("goal", "initial", "target", "waypoint", "set_pose", "clicked")
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What a replay reads."""
+
+    scan_topics: tuple[str, ...]
+    map_frame: str
+    pose: str  # "tf" or the topic of the poses
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PoseTopic:
+    """A topic with poses, as a look at the recordings found it."""
+
+    topic: str
+    msgtype: str
+    frame_id: str
+    child_frame_id: str | None
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a look at the recordings found."""
+
+    logs: tuple[str, ...]  # the recordings as the user named them
+    topics: Mapping[str, str]  # topic -> message type
+    scan_frames: Mapping[str, tuple[str, ...]]  # scan topic -> frames of its scans
+    frames: Frames
+    poses: tuple[PoseTopic, ...]
+
+    def line(self, *options: str) -> str:
+        """A command to paste."""
+        logs = " ".join(self.logs) if len(self.logs) <= 3 else f"{self.logs[0]} ..."
+        return f"timemap replay {logs} {' '.join(options)}"
+
+
+@dataclass(frozen=True, slots=True)
+class PoseChoice:
+    """A map frame and where the poses in it come from."""
+
+    map_frame: str
+    pose: str
+    warnings: tuple[str, ...] = ()
+
+
+def scan_candidates(logs: Sequence[str], topics: Mapping[str, str], wanted: Sequence[str]) -> tuple[str, ...]:
+    """The scan topics that come into question, sorted by name; those the user named, if any.
+
+    UsageError where there is none, or where a topic that was named is not one.
+    """
+    scans = tuple(sorted(topic for topic, msgtype in topics.items() if msgtype == SCAN_TYPE))
+    where = ", ".join(logs) if len(logs) <= 3 else f"{len(logs)} recordings"
+    if not scans:
+        raise UsageError(f"no laser scans in {where}: {_what_else(topics)}", hint=_instead(topics))
+    for topic in wanted:
+        if topic not in topics:
+            near = get_close_matches(topic, scans, 1) or scans
+            raise UsageError(
+                f"no topic {topic} in {where}", hint="\n".join(f"--scan-topic {name}" for name in near)
+            )
+        if topic not in scans:
+            raise UsageError(
+                f"{topic} holds {topics[topic]}, not {SCAN_TYPE}",
+                hint="\n".join(f"--scan-topic {name}" for name in scans),
+            )
+    return tuple(dict.fromkeys(wanted)) or scans
+
+
+def select(
+    seen: Seen, candidates: Sequence[str], wanted: InputSettings, works: Callable[[str, PoseChoice], bool]
+) -> Selection:
+    """Choose by what the recordings hold, where there is one choice.
+
+    `works` says whether a pose choice gives poses for scans of a topic. UsageError lists lines to paste.
+    """
+    if wanted.scan_topics or len(candidates) == 1:
+        scans = tuple(candidates)
+        choice = choose_poses(seen, scans, wanted, works)
+        return Selection(scans, choice.map_frame, choice.pose, choice.warnings)
+    tried = {topic: _try_poses(seen, topic, wanted, works) for topic in candidates}
+    found = {topic: choice for topic, choice in tried.items() if choice is not None}
+    if len(found) != 1:
+        raise UsageError(
+            f"{len(candidates)} scan topics and none named: {', '.join(candidates)}",
+            hint="\n".join(seen.line("--scan-topic", topic) for topic in (found or candidates)),
+        )
+    ((topic, choice),) = found.items()
+    others = ", ".join(name for name in candidates if name != topic)
+    warning = f"using {topic}, the only scan topic with poses (not {others})"
+    return Selection((topic,), choice.map_frame, choice.pose, (warning, *choice.warnings))
+
+
+def choose_poses(
+    seen: Seen, scans: Sequence[str], wanted: InputSettings, works: Callable[[str, PoseChoice], bool]
+) -> PoseChoice:
+    """Map frame and pose source for scan topics: TF, else poses in the map frame, else odometry."""
+    connected = list(_connected(seen, scans, wanted))
+    for choice in connected:
+        if all(works(topic, choice) for topic in scans):
+            return choice
+    raise _no_poses(seen, scans, wanted, connected)
+
+
+def _try_poses(
+    seen: Seen, topic: str, wanted: InputSettings, works: Callable[[str, PoseChoice], bool]
+) -> PoseChoice | None:
+    try:
+        return choose_poses(seen, (topic,), wanted, works)
+    except UsageError:
+        return None
+
+
+def _connected(seen: Seen, scans: Sequence[str], wanted: InputSettings) -> Iterable[PoseChoice]:
+    """Choices that the frames allow, best first."""
+    lasers = [frame for topic in scans for frame in seen.scan_frames.get(topic, ())]
+    if wanted.poses not in ("auto", TF):
+        topic = _named_pose_topic(seen, wanted.poses)
+        joined = seen.frames.connects(wanted.map_frame, topic.frame_id)
+        frame = wanted.map_frame if joined else topic.frame_id
+        if _reaches(seen, topic, lasers):
+            warnings = (*_frame_warnings(frame, wanted.map_frame), *_mount_warnings(seen, topic, lasers))
+            yield PoseChoice(frame, topic.topic, warnings)
+        return
+    frames = [wanted.map_frame]
+    if wanted.map_frame == DEFAULT_MAP_FRAME:
+        frames += sorted(seen.frames.like_odom() | {p.frame_id for p in seen.poses if "odom" in p.frame_id})
+    for frame in frames:
+        warnings = _frame_warnings(frame, wanted.map_frame)
+        if all(seen.frames.connects(frame, laser) for laser in lasers):
+            yield PoseChoice(frame, TF, warnings)
+        if wanted.poses == "auto":
+            for topic in _robot_poses(seen, frame):
+                if _reaches(seen, topic, lasers):
+                    mount = _mount_warnings(seen, topic, lasers)
+                    yield PoseChoice(frame, topic.topic, (*warnings, *mount))
+
+
+def _frame_warnings(frame: str, wanted: str) -> tuple[str, ...]:
+    if frame == wanted:
+        return ()
+    if "odom" in frame:
+        return (
+            f"no poses in '{wanted}': using '{frame}'; odometry drifts, "
+            "so slow levels smear and places seen again do not match",
+        )
+    return (f"the poses are in '{frame}', not in '{wanted}': used as the map frame",)
+
+
+def _named_pose_topic(seen: Seen, name: str) -> PoseTopic:
+    for topic in seen.poses:
+        if topic.topic == name:
+            return topic
+    known = "\n".join(f"--poses {topic.topic}" for topic in seen.poses) or "--poses tf"
+    msgtype = seen.topics.get(name)
+    if msgtype is None:
+        raise UsageError(f"no topic {name} with poses in {', '.join(seen.logs)}", hint=known)
+    if msgtype in POSE_TYPES:
+        raise UsageError(f"no pose could be read from {name} where scans are", hint=known)
+    raise UsageError(f"{name} holds {msgtype}, not poses", hint=known)
+
+
+def _robot_poses(seen: Seen, frame: str) -> list[PoseTopic]:
+    """Topics with poses of the robot in a frame, best first."""
+    found = [p for p in seen.poses if p.frame_id == frame and not any(word in p.topic for word in WISHES)]
+
+    def rank(pose: PoseTopic) -> tuple[bool, int, int, str]:
+        return "amcl" not in pose.topic, POSE_TYPES.index(pose.msgtype), -pose.count, pose.topic
+
+    return sorted(found, key=rank)
+
+
+def _reaches(seen: Seen, topic: PoseTopic, lasers: Sequence[str]) -> bool:
+    """Whether the frame whose pose it is can be joined to the lasers; one that is not named can."""
+    child = topic.child_frame_id
+    return not child or all(seen.frames.connects(child, laser) for laser in lasers)
+
+
+def _mount_warnings(seen: Seen, topic: PoseTopic, lasers: Sequence[str]) -> tuple[str, ...]:
+    """That the poses must be the laser's own, where nothing says how it is mounted."""
+    loose = sorted({laser for laser in lasers if not seen.frames.connected_to(laser) - {laser}})
+    if not loose or topic.child_frame_id in loose:
+        return ()
+    names = ", ".join(f"'{name}'" for name in loose)
+    return (f"no transform says where {names} sits on the robot: {topic.topic} is taken as its own pose",)
+
+
+def _no_poses(
+    seen: Seen, scans: Sequence[str], wanted: InputSettings, connected: Sequence[PoseChoice]
+) -> UsageError:
+    """The error that says why there are no poses, and what could be tried."""
+    lasers = [(topic, frame) for topic in scans for frame in seen.scan_frames.get(topic, ())]
+    if not lasers:
+        return UsageError(f"no scan of {', '.join(scans)} could be read")
+    target = f"'{wanted.map_frame}'"
+    if wanted.map_frame == DEFAULT_MAP_FRAME:
+        target += " or 'odom'"
+    topic, frame = next(
+        ((t, f) for t, f in lasers if not seen.frames.connects(wanted.map_frame, f)), lasers[0]
+    )
+    if connected:
+        return UsageError(
+            f"no pose for {topic}: '{connected[0].map_frame}' and '{frame}' are connected, "
+            "but at no time at which there are scans",
+            hint=f"timemap info {seen.logs[0]}, and compare the clocks of scans and transforms",
+        )
+    roots = [root for root in seen.frames.roots_of(frame) if root != wanted.map_frame]
+    tries = [seen.line("--map-frame", root) for root in roots]
+    tries += [seen.line("--poses", p.topic) for p in seen.poses if _reaches(seen, p, [frame])]
+    hint = "\n".join(dict.fromkeys(tries))
+    if not seen.frames and not seen.poses:
+        return UsageError(
+            f"no pose for {topic}: there are neither transforms nor poses in {', '.join(seen.logs)}",
+            hint="record /tf and /tf_static with the scans, or a pose topic such as /amcl_pose",
+        )
+    return UsageError(
+        f"no pose for {topic}: frame '{frame}' is not connected to {target} ({_family(seen.frames, frame)})",
+        hint=hint or _what_to_record(seen.frames, frame),
+    )
+
+
+def _what_to_record(frames: Frames, frame: str) -> str:
+    if frames and not frames.connected_to(frame) - {frame}:
+        return f"record /tf_static too; it must say where '{frame}' sits on the robot"
+    return "record the transforms from the map to the laser (/tf, /tf_static)"
+
+
+def _family(frames: Frames, frame: str) -> str:
+    """What a frame is connected to, in words."""
+    others = frames.connected_to(frame) - {frame}
+    if others:
+        return f"only to {_some(others)}"
+    rest = frames.names() - {frame}
+    return f"no transform names it; there are {_some(rest)}" if rest else "there are no transforms"
+
+
+def _some(names: Iterable[str]) -> str:
+    """A few of some frames, those first that one would look for."""
+
+    def rank(name: str) -> tuple[bool, str]:
+        return not any(word in name for word in ("map", "odom", "base_", "laser", "scan")), name
+
+    ordered = sorted(names, key=rank)
+    more = f" and {len(ordered) - 4} more" if len(ordered) > 4 else ""
+    return ", ".join(f"'{name}'" for name in ordered[:4]) + more
+
+
+def _what_else(topics: Mapping[str, str]) -> str:
+    names = sorted(topics)
+    more = f" and {len(names) - 6} more" if len(names) > 6 else ""
+    if not names:
+        return "there are no messages"
+    return f"no topic of type {SCAN_TYPE} among {', '.join(names[:6])}{more}"
+
+
+def _instead(topics: Mapping[str, str]) -> str:
+    for topic in sorted(topics):
+        if topics[topic] in CLOUD_TYPES:
+            return f"turn {topic} into laser scans first (pointcloud_to_laserscan)"
+    return "record the topic of the laser scanner together with /tf and /tf_static"

@@ -1,0 +1,270 @@
+"""Recordings to scans with poses: one stream in stamp order, in blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from timemap_cli.logs.batches import (
+    BadBatch,
+    Batch,
+    BeamLayout,
+    Float64s,
+    ScanBatch,
+    TransformBatch,
+)
+from timemap_cli.logs.beams import Beams, settle
+from timemap_cli.logs.history import Bools
+from timemap_cli.logs.interleave import NEVER_NS, Recorded, interleaved, joined
+from timemap_cli.logs.poses import TF, PoseSource, transform_topics
+from timemap_cli.logs.scan_window import (
+    BEGINNING_NS,
+    MAX_SWEEP_NS,
+    WINDOW_NS,
+    Entries,
+    Kind,
+    ScanWindow,
+    repeats,
+)
+from timemap_cli.logs.selection import Selection
+from timemap_cli.model.sweeps import Sweeps
+
+# Blocks of this many scans keep the cost per block small; more only cost memory.
+LEAST_SCANS = 128
+MOST_SCANS = 512
+MOST_BYTES = 16_000_000
+# Without a scan for so long, what waits is let out and only the newest transforms are kept.
+SILENCE_NS = 60_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class EndOfRecording:
+    """Says that the last scan of a recording has come out."""
+
+    recording: int
+
+
+@dataclass(slots=True)
+class ScanCounts:
+    """Every scan read, and why those were dropped that did not come out.
+
+    Reasons: ``malformed`` (or what decoding said), ``outside_time``, ``late`` (more than 10 s behind the
+    newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
+    """
+
+    read: int = 0
+    dropped: dict[str, int] = field(default_factory=dict)
+    transforms_dropped: int = 0  # transforms and poses that could not be decoded or used
+
+    def drop(self, reason: str, count: int) -> None:
+        """Count scans that were dropped."""
+        if count:
+            self.dropped[reason] = self.dropped.get(reason, 0) + count
+
+
+def sweeps(
+    recordings: Sequence[Recorded],
+    selection: Selection,
+    beams: Mapping[tuple[int, str], Beams],
+    counts: ScanCounts,
+    *,
+    start_ns: int | None = None,
+    end_ns: int | None = None,
+) -> Iterator[Sweeps | EndOfRecording]:
+    """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
+
+    ``recordings`` are in the order of their starts; ``beams`` is by (index, topic).
+    Recordings that overlap or follow within 10 s are one drive: merged, with common transforms. Within a
+    drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
+    (open) cut by the scans' stamps; static transforms count wherever they stand. Which scans share a block
+    has no bearing on any value.
+    """
+    span_ns = (BEGINNING_NS if start_ns is None else start_ns, NEVER_NS if end_ns is None else end_ns)
+    static = [_static_transforms(recording, counts) for recording in recordings]
+    for number, group in enumerate(joined(recordings, WINDOW_NS)):
+        poses = PoseSource(selection.map_frame, selection.pose)
+        # A drive's first part may be the only one to hold the static transforms: its own come last and
+        # replace what the others say.
+        for batch in _by_nearness(static, group):
+            poses.add(batch)
+        rejected = poses.rejected if number else 0
+        yield from _Drive(recordings, selection, beams, counts, span_ns, poses).blocks(group)
+        counts.transforms_dropped += poses.rejected - rejected
+
+
+class _Drive:
+    """Recordings that belong together, on their way through the window."""
+
+    def __init__(
+        self,
+        recordings: Sequence[Recorded],
+        selection: Selection,
+        beams: Mapping[tuple[int, str], Beams],
+        counts: ScanCounts,
+        span_ns: tuple[int, int],
+        poses: PoseSource,
+    ) -> None:
+        self._recordings = recordings
+        self._rank = {topic: rank for rank, topic in enumerate(selection.scan_topics)}
+        self._pose_topics = () if selection.pose == TF else (selection.pose,)
+        self._beams = dict(beams)
+        self._counts = counts
+        self._end_ns = span_ns[1]
+        self._poses = poses
+        self._window = ScanWindow(span_ns)
+        self._frame_codes: dict[str, int] = {}
+        self._newest_ns: dict[int, int] = {}  # recording -> largest stamp of its scans
+        self._ends: list[tuple[int, int]] = []  # (stamp after which it is over, recording)
+        self._scan_log_ns = NEVER_NS
+
+    def blocks(self, group: Sequence[int]) -> Iterator[Sweeps | EndOfRecording]:
+        """Yield the blocks of the recordings, and their ends."""
+        self._scan_log_ns = self._recordings[group[0]].start_ns
+        topics = {index: self._topics(index) for index in group}
+        for index, batches, until_ns in interleaved(self._recordings, topics, group):
+            if batches is None:
+                self._end(index)
+            else:
+                self._take(index, batches)
+            self._arrive(until_ns)
+            yield from self._let_out(until_ns)
+            if self._window.ready_before_ns >= self._end_ns:
+                break
+        self._arrive(NEVER_NS)
+        for index in group:
+            self._end(index)
+        yield from self._placed(self._window.take_all(), NEVER_NS)
+
+    def _topics(self, index: int) -> tuple[str, ...]:
+        moving, _ = transform_topics(self._recordings[index].topics)
+        return (*self._rank, *self._pose_topics, *moving)
+
+    def _take(self, index: int, batches: Sequence[Batch]) -> None:
+        for batch in batches:
+            if isinstance(batch, ScanBatch):
+                self._take_scans(index, batch)
+            elif not isinstance(batch, BadBatch):
+                self._poses.add(batch)
+            elif batch.topic in self._rank:
+                self._counts.read += batch.count
+                self._counts.drop(batch.reason, batch.count)
+            else:
+                self._counts.transforms_dropped += batch.count
+
+    def _take_scans(self, index: int, batch: ScanBatch) -> None:
+        self._counts.read += len(batch.stamps_ns)
+        if not len(batch.stamps_ns):
+            return
+        if not _has_bearings(batch.layout):
+            self._counts.drop("malformed", len(batch.stamps_ns))
+            return
+        layout, frame = batch.layout, batch.frame_id.lstrip("/")
+        reading = self._reading(index, batch)
+        self._window.add(
+            batch,
+            reading.resolve(batch.ranges, batch.range_max),
+            Kind(index, layout.angle_min, layout.angle_increment, layout.count, reading.clear_range),
+            topic=self._rank[batch.topic],
+            frame=self._frame_codes.setdefault(frame, len(self._frame_codes)),
+        )
+        self._newest_ns[index] = max(self._newest_ns.get(index, BEGINNING_NS), int(batch.stamps_ns.max()))
+        self._scan_log_ns = max(self._scan_log_ns, int(batch.log_ns.max()))
+
+    def _reading(self, index: int, batch: ScanBatch) -> Beams:
+        """What the beams mean; for a recording whose scans no sample met, as in another one."""
+        key = (index, batch.topic)
+        if key not in self._beams:
+            others = [beams for (_, topic), beams in self._beams.items() if topic == batch.topic]
+            self._beams[key] = others[0] if others else settle([batch]).ignoring_missing()
+        return self._beams[key]
+
+    def _end(self, index: int) -> None:
+        """Note a recording read to its end: it is over after its newest scan, or after what is out."""
+        if index not in [ended for _, ended in self._ends]:
+            newest_ns = self._newest_ns.get(index, BEGINNING_NS)
+            self._ends.append((max(newest_ns, self._window.ready_before_ns), index))
+
+    def _arrive(self, until_ns: int) -> None:
+        late, outside = self._window.arrive(until_ns)
+        self._counts.drop("late", late)
+        self._counts.drop("outside_time", outside)
+
+    def _let_out(self, until_ns: int) -> Iterator[Sweeps | EndOfRecording]:
+        """Yield what is ready if it is worth a block, or everything after a long silence of the scanner."""
+        window = self._window
+        if (
+            window.count_ready() >= LEAST_SCANS
+            or window.nbytes > MOST_BYTES
+            or window.clock_ns - window.oldest_ns > SILENCE_NS
+        ):
+            yield from self._placed(window.take_ready(), window.ready_before_ns)
+            self._poses.forget(window.oldest_ns - MAX_SWEEP_NS)
+        if NEVER_NS > until_ns > self._scan_log_ns + SILENCE_NS:
+            yield from self._placed(window.take_all(), window.ready_before_ns)
+            self._poses.forget_all_but(SILENCE_NS)
+
+    def _placed(self, entries: Entries, limit_ns: int) -> Iterator[Sweeps | EndOfRecording]:
+        """Yield scans in stamp order as blocks; in between, recordings that are over before the limit."""
+        again = repeats(entries)
+        self._counts.drop("duplicate", int(np.count_nonzero(again)))
+        entries = entries[~again]
+        first, last, known = self._look_up(entries)
+        self._counts.drop("no_pose", len(known) - int(np.count_nonzero(known)))
+        entries, first, last = entries[known], first[known], last[known]
+        over = sorted(end for end in self._ends if end[0] < limit_ns)
+        self._ends = [end for end in self._ends if end[0] >= limit_ns]
+        begin = 0
+        for over_ns, recording in over:
+            stop = int(np.searchsorted(entries["stamp"], over_ns, side="right"))
+            yield from self._cut(entries[begin:stop], first[begin:stop], last[begin:stop])
+            yield EndOfRecording(recording)
+            begin = stop
+        yield from self._cut(entries[begin:], first[begin:], last[begin:])
+        self._window.release()
+
+    def _look_up(self, entries: Entries) -> tuple[Float64s, Float64s, Bools]:
+        """Poses (n, 3, 4) at the first and the last beams, and where (n,) they are known."""
+        first, last = np.empty((len(entries), 3, 4)), np.empty((len(entries), 3, 4))
+        known = np.zeros(len(entries), dtype=bool)
+        for frame, code in self._frame_codes.items():
+            rows = np.flatnonzero(entries["frame"] == code)
+            stamps_ns, durations_ns = entries["stamp"][rows], entries["sweep"][rows]
+            if len(rows):
+                first[rows], last[rows], known[rows] = self._poses.sweep(frame, stamps_ns, durations_ns)
+        return first, last, known
+
+    def _cut(self, entries: Entries, first: Float64s, last: Float64s) -> Iterator[Sweeps]:
+        for kind, run in self._window.cut(entries, MOST_SCANS, MOST_BYTES):
+            yield Sweeps(
+                stamps_ns=entries["stamp"][run].copy(),
+                ranges=self._window.gather(entries[run]),
+                bearings=kind.bearings(),
+                clear_range=kind.clear_range,
+                map_from_laser_first=first[run],
+                map_from_laser_last=last[run],
+                recording=kind.recording,
+            )
+
+
+def _static_transforms(recording: Recorded, counts: ScanCounts) -> list[TransformBatch]:
+    """All static transforms of a recording."""
+    _, topics = transform_topics(recording.topics)
+    found: list[TransformBatch] = []
+    for batches in recording.batches(topics) if topics else ():
+        found += [batch for batch in batches if isinstance(batch, TransformBatch)]
+        counts.transforms_dropped += sum(batch.count for batch in batches if isinstance(batch, BadBatch))
+    return found
+
+
+def _by_nearness(static: Sequence[list[TransformBatch]], group: Sequence[int]) -> Iterator[TransformBatch]:
+    """Static transforms of all recordings, those of the group last; of either the first recording's last."""
+    others = [index for index in range(len(static)) if index not in group]
+    for index in (*reversed(others), *reversed(group)):
+        yield from static[index]
+
+
+def _has_bearings(layout: BeamLayout) -> bool:
+    finite = np.isfinite(layout.angle_min) and np.isfinite(layout.angle_increment)
+    return bool(finite) and layout.count > 0 and (layout.angle_increment != 0 or layout.count == 1)

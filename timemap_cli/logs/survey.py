@@ -1,0 +1,194 @@
+"""What a replay needs to know before it starts, found out from a small sample of the recordings."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+
+from timemap_cli.config import InputSettings, Settings
+from timemap_cli.logs.batches import PoseBatch, ScanBatch
+from timemap_cli.logs.beams import Beams, settle
+from timemap_cli.logs.frames import Frames
+from timemap_cli.logs.missing_returns import MissingReturns, examine
+from timemap_cli.logs.poses import PoseSource
+from timemap_cli.logs.recordings import Recording
+from timemap_cli.logs.sampling import Sample, take_sample
+from timemap_cli.logs.selection import (
+    POSE_TYPES,
+    PoseChoice,
+    PoseTopic,
+    Seen,
+    Selection,
+    scan_candidates,
+    select,
+)
+from timemap_cli.model.sweeps import Sweeps
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What is read, and how the beams of each scanner are to be understood."""
+
+    selection: Selection
+    beams: Mapping[tuple[int, str], Beams]  # (index of the recording, scan topic); none where it has no scans
+    missing_returns: Mapping[str, MissingReturns]  # scan topic -> what the test found; empty where not tested
+    problems: tuple[str, ...]
+
+    @property
+    def no_return(self) -> str:
+        """What a missing return counts as: "clear" or "ignore" (no evidence); "ignore" if for one scanner."""
+        return "clear" if all(beams.missing_is_clear for beams in self.beams.values()) else "ignore"
+
+    @property
+    def contradicted(self) -> float | None:
+        """Share of missing returns that pass through something solid; of several scanners the worst."""
+        shares = [found.contradicted for found in self.missing_returns.values()]
+        return max((share for share in shares if share is not None), default=None)
+
+
+def survey(recordings: Sequence[Recording], settings: Settings) -> Survey:
+    """Look at a few hundred scans of the recordings and choose what to read and how.
+
+    UsageError where there are no scans or no poses, or several and none named; it lists lines to paste.
+    """
+    topics = topics_of(recordings)
+    candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+    return survey_sample(recordings, take_sample(recordings, candidates), candidates, settings)
+
+
+def survey_sample(
+    recordings: Sequence[Recording], sample: Sample, candidates: Sequence[str], settings: Settings
+) -> Survey:
+    """The same, from a sample that was taken before."""
+    seen = what_is_seen(recordings, sample, topics_of(recordings))
+    poses = SampledPoses(sample)
+    selection = select(seen, candidates, settings.input, poses.are_known_somewhere)
+    chosen = {key: scans for key, scans in sample.scans.items() if key[1] in selection.scan_topics}
+    beams = {key: settle(scans) for key, scans in chosen.items()}
+    missing: dict[str, MissingReturns] = {}
+    for topic in selection.scan_topics:
+        if settings.input.no_return == "auto":
+            missing[topic] = _examined(sample, topic, beams, poses, selection, settings.map.radius)
+        if not _are_clear(missing.get(topic), settings.input):
+            beams |= {key: b.ignoring_missing() for key, b in beams.items() if key[1] == topic}
+    return Survey(selection, beams, missing, _problems(recordings, sample, poses, selection))
+
+
+def topics_of(recordings: Sequence[Recording]) -> dict[str, str]:
+    """Topics that hold messages, with their types, over all recordings."""
+    return {t.name: t.msgtype for r in recordings for t in r.topics if t.count != 0}
+
+
+def names_of(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """The recordings as the user named them."""
+    return tuple(str(recording.path) for recording in recordings)
+
+
+def what_is_seen(recordings: Sequence[Recording], sample: Sample, topics: Mapping[str, str]) -> Seen:
+    """Frames and poses of a sample."""
+    transforms = chain(sample.static_transforms, *sample.transforms)
+    edges = dict.fromkeys((batch.parent, batch.child) for batch in transforms)
+    frames: dict[str, tuple[str, ...]] = {}
+    for (_, topic), batches in sample.scans.items():
+        found = (*frames.get(topic, ()), *(batch.frame_id for batch in batches))
+        frames[topic] = tuple(dict.fromkeys(found))
+    return Seen(names_of(recordings), topics, frames, Frames(edges), _pose_topics(recordings, sample, topics))
+
+
+class SampledPoses:
+    """Poses of the recordings as far as a sample goes."""
+
+    def __init__(self, sample: Sample) -> None:
+        self._sample = sample
+        self._sources: dict[tuple[int, str, str], PoseSource] = {}
+
+    def source(self, index: int, map_frame: str, pose: str) -> PoseSource:
+        """Poses of one recording; static transforms of the others count too."""
+        key = index, map_frame, pose
+        if key not in self._sources:
+            source = self._sources[key] = PoseSource(map_frame, pose)
+            for transforms in (*self._sample.static_transforms, *self._sample.transforms[index]):
+                source.add(transforms)
+            for poses in self._sample.poses[index]:
+                source.add(poses)
+        return self._sources[key]
+
+    def are_known(self, index: int, topic: str, choice: PoseChoice | Selection) -> bool:
+        """Whether a choice gives poses to scans of a topic in a recording."""
+        source = self.source(index, choice.map_frame, choice.pose)
+        scans = self._sample.scans.get((index, topic), ())
+        return any(bool(source.lookup(batch.frame_id, batch.stamps_ns)[1].any()) for batch in scans)
+
+    def are_known_somewhere(self, topic: str, choice: PoseChoice) -> bool:
+        """Whether a choice gives poses to scans of a topic in any recording."""
+        return any(
+            self.are_known(index, topic, choice) for index, name in self._sample.scans if name == topic
+        )
+
+
+def _pose_topics(
+    recordings: Sequence[Recording], sample: Sample, topics: Mapping[str, str]
+) -> tuple[PoseTopic, ...]:
+    found: dict[str, PoseBatch] = {}
+    for batch in (batch for batches in sample.poses for batch in batches):
+        found.setdefault(batch.topic, batch)
+    counts = {name: sum(t.count for r in recordings for t in r.topics if t.name == name) for name in found}
+    return tuple(
+        PoseTopic(name, topics[name], found[name].frame_id, found[name].child_frame_id, counts[name])
+        for name in sorted(found)
+        if topics.get(name) in POSE_TYPES
+    )
+
+
+def _are_clear(found: MissingReturns | None, wanted: InputSettings) -> bool:
+    return wanted.no_return == "clear" if found is None else found.are_clear
+
+
+def _examined(
+    sample: Sample,
+    topic: str,
+    beams: Mapping[tuple[int, str], Beams],
+    poses: SampledPoses,
+    selection: Selection,
+    radius: float,
+) -> MissingReturns:
+    """What the test of missing returns finds for a topic."""
+    sweeps = []
+    for index, batch in sample.of_topic(topic):
+        source = poses.source(index, selection.map_frame, selection.pose)
+        sweeps.append(_placed(batch, beams[index, topic], source, index))
+    return examine([block for block in sweeps if len(block)], radius)
+
+
+def _placed(batch: ScanBatch, beams: Beams, source: PoseSource, recording: int) -> Sweeps:
+    """The scans of a batch that have a pose."""
+    map_from_laser, known = source.lookup(batch.frame_id, batch.stamps_ns)
+    layout = batch.layout
+    return Sweeps(
+        stamps_ns=batch.stamps_ns[known],
+        ranges=beams.resolve(batch.ranges[known], batch.range_max[known]),
+        bearings=layout.angle_min + layout.angle_increment * np.arange(layout.count, dtype=np.float64),
+        clear_range=beams.clear_range,
+        map_from_laser_first=map_from_laser[known],
+        map_from_laser_last=map_from_laser[known],
+        recording=recording,
+    )
+
+
+def _problems(
+    recordings: Sequence[Recording], sample: Sample, poses: SampledPoses, selection: Selection
+) -> tuple[str, ...]:
+    """What a replay of the recordings would be short of."""
+    found = []
+    for index, recording in enumerate(recordings):
+        topics = [topic for topic in selection.scan_topics if (index, topic) in sample.scans]
+        if not topics:
+            found.append(f"{recording.path} has no scans of {', '.join(selection.scan_topics)}")
+        posed = [topic for topic in topics if poses.are_known(index, topic, selection)]
+        found += [
+            f"{recording.path} has no poses in '{selection.map_frame}' for {topic}"
+            for topic in topics
+            if topic not in posed
+        ]
+    return tuple(found)

@@ -1,0 +1,81 @@
+"""From scans to what their nodes learn from them: which node, whether it can be judged, and who may take it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model.gate import Gate, Passage, passing
+from timemap_cli.model.nodes import Node
+from timemap_cli.model.placement import NO_NODE, Placement
+from timemap_cli.model.sweeps import Sweeps
+from timemap_cli.model.virtual_scan import Bools, Ranges, virtual_scans
+
+Ints = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Observations:
+    """What n scans of a block say of their nodes, in stamp order, and what became of the block's other scans."""
+
+    nodes: Ints  # (n,) number of the node
+    stamps_ns: Ints  # (n,)
+    ranges: Ranges  # (n, angle_bins) virtual scans [mm]
+    passes: Bools  # (n,) slower levels may take it
+    node_not_seen: int  # scans from which the node's centre cannot be judged
+    no_node: int  # scans that no given node is near
+    all_nodes: Sequence[Node]  # the observer's list, which only ever grows
+
+    def __len__(self) -> int:
+        return len(self.nodes)
+
+    def part(self, rows: slice) -> "Observations":
+        """These observations alone."""
+        return replace(
+            self,
+            nodes=self.nodes[rows],
+            stamps_ns=self.stamps_ns[rows],
+            ranges=self.ranges[rows],
+            passes=self.passes[rows],
+        )
+
+
+class Observer:
+    """Gives every scan to its node and turns it into what it would have been from there."""
+
+    def __init__(
+        self, gate: Gate, *, angle_bins: int, radius: float, spacing: float, nodes: Sequence[Node] = ()
+    ) -> None:
+        """`radius`: how far a node looks [m]; `spacing` [m] as in Placement; given `nodes` are all there will be."""
+        self._placement = Placement(spacing, nodes)
+        self._gate = gate
+        self._passages: dict[int, Passage] = {}
+        self._angle_bins = angle_bins
+        self._radius = radius
+
+    def observe(self, sweeps: Sweeps) -> Observations:
+        """Observations from a block of scans; blocks must come in stamp order."""
+        places = _places(sweeps)
+        nodes = self._placement.assign(places[:, :2])
+        near = np.flatnonzero(nodes != NO_NODE)
+        centres = self._placement.centres[nodes[near]]
+        ranges, judged = virtual_scans(sweeps.rows(near), centres, self._angle_bins, self._radius)
+        rows = near[judged]
+        nodes, stamps_ns = nodes[rows], sweeps.stamps_ns[rows]
+        return Observations(
+            nodes,
+            stamps_ns,
+            ranges[judged],
+            passing(self._gate, nodes.tolist(), places[rows], stamps_ns, self._passages),
+            node_not_seen=len(near) - len(rows),
+            no_node=len(sweeps) - len(near),
+            all_nodes=self._placement.nodes,
+        )
+
+
+def _places(sweeps: Sweeps) -> Floats:
+    """x, y [m] and yaw [rad] (n, 3) of the laser at its first beam, in the map frame."""
+    pose = sweeps.map_from_laser_first
+    return np.column_stack((pose[:, 0, 3], pose[:, 1, 3], np.arctan2(pose[:, 1, 0], pose[:, 0, 0])))

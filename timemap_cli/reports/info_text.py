@@ -1,0 +1,124 @@
+"""What is in recordings, as a text of one screen."""
+
+from collections.abc import Iterator, Sequence
+
+from timemap_cli.logs.beams import BeamCounts
+from timemap_cli.logs.inspect import Inspection, LogInfo, PoseInfo
+from timemap_cli.logs.irregularities import duration
+from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.logs.scan_statistics import ScanTopic
+from timemap_cli.times import format_time
+
+Row = tuple[str, str]  # a word in the left column, and what is said about it
+
+
+def info_text(inspection: Inspection) -> str:
+    """A paragraph for each recording and one on what a replay would use. Ends without a newline."""
+    paragraphs = [_log(log) for log in inspection.logs]
+    paragraphs.append(_outlook(inspection))
+    return "\n\n".join("\n".join(lines) for lines in paragraphs)
+
+
+def _log(log: LogInfo) -> list[str]:
+    rows = [*(row for scan in log.scans for row in _scan(scan)), *map(_pose, log.poses)]
+    if log.other_topics:
+        rows.append(("", f"and {log.other_topics} other {_plural('topic', log.other_topics)}"))
+    rows += _list("problem", log.problems)
+    length = duration((log.end_ns - log.start_ns) / 1e9)
+    title = f"{log.path}: {log.format}, {length} from {format_time(log.start_ns // 10**6 * 10**6)}"
+    return [title, *_columns(rows)]
+
+
+def _scan(scan: ScanTopic) -> Iterator[Row]:
+    if scan.count == 0:
+        yield scan.topic, "no scan that can be read"
+        return
+    rate = f" at {scan.rate_hz:.3g} Hz" if scan.rate_hz else ""
+    yield scan.topic, f"{scan.count} {_plural('scan', scan.count)}{rate} in '{scan.frame_id}'"
+    yield (
+        "",
+        f"{scan.n_beams} beams over {scan.fov_deg:.0f} deg, {scan.range_min_m:.3g} to {scan.range_max_m:.3g} m",
+    )
+    yield "", _kinds(scan.beams)
+    for text in scan.found:
+        yield "", text
+    yield "", f"{_of(scan.with_pose, scan.count)} scans have a pose"
+
+
+def _kinds(beams: BeamCounts) -> str:
+    kinds = (
+        (beams.hit, "hit"),
+        (beams.no_return, "no return"),
+        (beams.invalid, "invalid"),
+        (beams.too_close, "too close"),
+    )
+    return "beams: " + ", ".join(f"{_percent(count, beams.total)} {name}" for count, name in kinds if count)
+
+
+def _pose(pose: PoseInfo) -> Row:
+    name = pose.msgtype.rsplit("/", 1)[-1]
+    if pose.frame_id is None:
+        return pose.topic, f"{pose.count} {name}"
+    of = f" of '{pose.child_frame_id}'" if pose.child_frame_id else ""
+    return pose.topic, f"{pose.count} {name}{of} in '{pose.frame_id}'"
+
+
+def _outlook(inspection: Inspection) -> list[str]:
+    """What a replay would use, or why it would not start."""
+    selection, trouble = inspection.selection, inspection.trouble
+    if selection is None:
+        message = trouble.message if trouble else "nothing to replay"
+        hints = (trouble.hint or "").splitlines() if trouble else []
+        return [f"A replay would stop: {message}", *(f"  try: {hint}" for hint in hints)]
+    poses = " and ".join(" > ".join(chain) for chain in inspection.chains)
+    rows = [
+        ("scans", ", ".join(selection.scan_topics)),
+        ("map frame", selection.map_frame),
+        ("poses", f"{selection.pose} ({poses})" if poses else selection.pose),
+    ]
+    found = [inspection.missing_returns.get(topic) for topic in selection.scan_topics]
+    rows += [("no return", _no_return(test, inspection.no_return)) for test in found]
+    rows += _list("warning", selection.warnings)
+    rows += _list("problem", inspection.problems)
+    return ["A replay would use", *_columns(rows)]
+
+
+def _no_return(found: MissingReturns | None, no_return: str | None) -> str:
+    if found is None:
+        return f"{'free space' if no_return == 'clear' else 'no evidence'}, as set"
+    if found.contradicted is None:
+        return (
+            "there is none"
+            if found.beams == 0
+            else f"free space; {found.beams} in the sample, too few to test"
+        )
+    share = f"{100 * found.contradicted:.0f} % of those sampled pass through something solid"
+    if found.are_clear:
+        return f"free space: {share}"
+    return f"no evidence: {share} (glass, mirrors, black surfaces)"
+
+
+def _list(word: str, sentences: Sequence[str]) -> list[Row]:
+    return [
+        (_plural(word, len(sentences)) if index == 0 else "", text) for index, text in enumerate(sentences)
+    ]
+
+
+def _columns(rows: Sequence[Row]) -> list[str]:
+    width = max((len(word) for word, _ in rows), default=0)
+    return [f"  {word.ljust(width)}  {text}" for word, text in rows]
+
+
+def _of(part: int, whole: int) -> str:
+    return f"all {whole}" if part == whole else f"{part} of {whole}"
+
+
+def _percent(part: int, whole: int) -> str:
+    share = 100 * part / whole
+    if share < 0.1:
+        return "< 0.1 %"
+    return "> 99.9 %" if 99.9 < share < 100 else f"{share:.3g} %"
+
+
+def _plural(noun: str, count: int) -> str:
+    return noun if count == 1 else f"{noun}s"
