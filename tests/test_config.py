@@ -42,7 +42,7 @@ def test_the_defaults_are_those_that_served_best_on_real_recordings():
         ("long", 100, "200obs"),
     ]
     assert settings.gate == GateSettings(min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.2)
-    assert settings.estimate.every == Span(10.0, "s")
+    assert settings.estimate.every == Span(30.0, "s")
     assert settings.input == InputSettings((), "map", "auto", "auto", 0.05)
     assert (settings.seed, settings.profile) == (0, "default")
 
@@ -222,7 +222,7 @@ def test_the_paper_profile_has_the_numbers_of_the_paper_and_no_gate():
 
 def test_a_file_wins_over_the_numbers_of_the_profile(tmp_path):
     path = file_with(tmp_path, "profile: paper\nmap: {radius: 3}\n")
-    assert load(path).map == MapSettings(radius=3.0)
+    assert load(path).map == MapSettings(radius=3.0, range_bin=0.075)
     assert load(path, {"profile": "default"}).gate == GateSettings()
 
 

@@ -68,7 +68,7 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
                 f"{old_path} and {new_path} share no nodes",
                 hint=f"timemap replay LOG... --nodes {old_path} -o {new_path} --force",
             )
-        difference = compare(old.nodes, before, after, radius=old.radius, only_renewed=True)
+        difference = compare(old.nodes, before, after, radius=old.radius)
         sides = (
             ComparedSide(str(path), level, reader.end_ns)
             for path, reader in ((old_path, old), (new_path, new))

@@ -69,9 +69,9 @@ class EstimateSettings:
     """When a node that changed is estimated and written."""
 
     every: Period = setting(
-        Span(10.0, "s"),
+        Span(30.0, "s"),
         SpanOf(0.1, 1e6, ("s", "obs")),
-        "so long, or so many scans of it (obs), after its last one",
+        "how often nodes that changed are estimated",
     )
 
 

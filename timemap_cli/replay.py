@@ -6,11 +6,13 @@ import time
 from collections import Counter
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import ExitStack, closing
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
+from timemap_cli.ahead import ahead
 from timemap_cli.config import LevelSettings, Settings, dump, settings_hash
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
@@ -81,24 +83,39 @@ def replay(
         start_ns, end_ns = _span_ns(recordings, start, end)
         counts = ScanCounts()
         blocks = sweeps(recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns)
-        observed = stack.enter_context(closing(_observed(blocks, _observer(settings, given))))
-        for block in observed:
-            if isinstance(block, EndOfRecording):
-                run.end_recording()
-                continue
-            run.replay(block)
+        observed = partial(_observed, blocks, _observer(settings, given), counts, recordings)
+        for step in stack.enter_context(closing(ahead(observed))):
+            run.take(step)
             if progress is not None:
-                progress(_share_done(recordings, run.newest_ns), counts.read)
-        summary = _summary(output, settings, plan, recordings, run, counts, time.perf_counter() - began)
+                progress(_share_done(recordings, run.newest_ns), run.counts.read)
+        summary = _summary(output, settings, plan, run, time.perf_counter() - began)
         result.finish(_metadata(settings, recordings, summary), dump(settings), _report(plan, summary))
     return summary
 
 
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A step of reading, and how far it has come."""
+
+    seen: Observations | None  # None: a recording has ended
+    counts: ScanCounts
+    damage: tuple[str, ...]  # what is wrong with the recordings, as far as read
+
+
 def _observed(
-    blocks: Iterable[Sweeps | EndOfRecording], observer: Observer
-) -> Generator[Observations | EndOfRecording, None, None]:
+    blocks: Iterable[Sweeps | EndOfRecording],
+    observer: Observer,
+    counts: ScanCounts,
+    recordings: Sequence[Recording],
+) -> Generator[_Step, None, None]:
     for block in blocks:
-        yield block if isinstance(block, EndOfRecording) else observer.observe(block)
+        seen = None if isinstance(block, EndOfRecording) else observer.observe(block)
+        yield _Step(seen, deepcopy(counts), _damage(recordings))
+    yield _Step(None, counts, _damage(recordings))  # what was dropped after the last block
+
+
+def _damage(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    return tuple(f"{r.path}: {problem}" for r in recordings for problem in r.problems)
 
 
 class _Run:
@@ -108,23 +125,34 @@ class _Run:
         self.time_map = time_map
         self.used = 0
         self.dropped: Counter[str] = Counter()
+        self.counts, self.damage = ScanCounts(), ()  # type: tuple[ScanCounts, tuple[str, ...]]
         self.newest_ns: int | None = None  # stamp of the newest scan learnt
+        self._maps_ns: int | None = None  # stamp of the newest maps written
         self._result = result
         self._schedule = schedule
         self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in time_map.levels}
 
-    def replay(self, block: Observations) -> None:
-        self.used += len(block)
-        self.dropped.update(node_not_seen=block.node_not_seen, no_node=block.no_node)
-        for part, estimates_are_due in self._schedule.parts(block.stamps_ns):
-            self._learn(block.part(part))
+    def take(self, step: _Step) -> None:
+        self.counts, self.damage = step.counts, step.damage
+        if step.seen is None:
+            self._end_recording()
+        else:
+            self._replay(step.seen)
+
+    def _replay(self, seen: Observations) -> None:
+        self.used += len(seen)
+        self.dropped.update(node_not_seen=seen.node_not_seen, no_node=seen.no_node)
+        for part, estimates_are_due in self._schedule.parts(seen.stamps_ns):
+            self._learn(seen.part(part))
             if estimates_are_due:
                 self._write_estimates()
 
-    def end_recording(self) -> None:
+    def _end_recording(self) -> None:
+        """Write the maps, once at each stamp: recordings may end together."""
         self._write_estimates()
-        if self.newest_ns is not None:
+        if self.newest_ns is not None and self.newest_ns != self._maps_ns:
             self._result.write_maps(self._latest, self.time_map.nodes, self.newest_ns)
+            self._maps_ns = self.newest_ns
 
     @property
     def span_ns(self) -> int:
@@ -216,29 +244,20 @@ def _share_done(recordings: Sequence[Recording], now_ns: int | None) -> float:
     return done / max(1, sum(r.end_ns - r.start_ns for r in recordings))
 
 
-def _summary(
-    output: Path,
-    settings: Settings,
-    plan: Survey,
-    recordings: Sequence[Recording],
-    run: _Run,
-    counts: ScanCounts,
-    seconds: float,
-) -> ReplaySummary:
-    dropped = Counter(counts.dropped) + run.dropped
+def _summary(output: Path, settings: Settings, plan: Survey, run: _Run, seconds: float) -> ReplaySummary:
+    dropped = Counter(run.counts.dropped) + run.dropped
     lost = sum(count for reason, count in dropped.items() if reason not in _NOT_LOST)
-    wanted = counts.read - sum(dropped[reason] for reason in _NOT_LOST)
-    damage = tuple(f"{r.path}: {problem}" for r in recordings for problem in r.problems)
+    wanted = run.counts.read - sum(dropped[reason] for reason in _NOT_LOST)
     return ReplaySummary(
         result=output,
         nodes=len(run.time_map.nodes),
         levels=run.time_map.levels,
-        scans_read=counts.read,
+        scans_read=run.counts.read,
         scans_used=run.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*plan.selection.warnings, *plan.problems, *damage, *_span_warning(run.span_ns)),
-        data_lost=bool(damage) or lost > settings.input.max_dropped * wanted,
+        warnings=(*plan.selection.warnings, *plan.problems, *run.damage, *_span_warning(run.span_ns)),
+        data_lost=bool(run.damage) or lost > settings.input.max_dropped * wanted,
     )
 
 

@@ -73,7 +73,8 @@ def _windows(group, width):
     if _span(group) <= width:
         return [group]
     inside = [
-        sum(1 for other in group[i:] if stretched(other) <= stretched(value) + width) for i, value in enumerate(group)
+        sum(1 for other in group[i:] if stretched(other) <= stretched(value) + width)
+        for i, value in enumerate(group)
     ]
     start = inside.index(max(inside))
     stop = start + inside[start]
@@ -137,7 +138,8 @@ class SlowEstimate:
     def score(self, path):
         """Score of a closed path, a state for each angle bin."""
         return sum(
-            self.unary[a][path[a]] + self.pairwise[a][path[a]][path[(a + 1) % len(self.bins)]] for a in self.bins
+            self.unary[a][path[a]] + self.pairwise[a][path[a]][path[(a + 1) % len(self.bins)]]
+            for a in self.bins
         )
 
     def best_score(self):

@@ -1,7 +1,7 @@
 """A slow virtual scan: one scan, one node, plain loops in float64, exact intersections of ray and segment.
 
-It follows the rule as it is written down, not the way the model computes it: every beam is followed, a hit's line of sight
-is cut with every edge in its own direction, and the robot's disc is a circle of many corners.
+It follows the rule as it is written down, not the way the model computes it: every beam is followed, a hit's line of
+sight is cut with every edge in its own direction, and the robot's disc is a circle of many corners.
 """
 
 import math
@@ -19,7 +19,9 @@ def slow_virtual_scan(scan, row, centre, angle_bins, radius):
     turned = sum(_step(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True))
     if abs(turned) < math.pi:
         return None
-    edges = np.array([(a[0], a[1], b[0], b[1]) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)])
+    edges = np.array(
+        [(a[0], a[1], b[0], b[1]) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    )
     hits = [[] for _ in range(angle_bins)]
     for x, y, kind in corners:
         distance = math.hypot(x, y)
@@ -44,14 +46,14 @@ def _outline(scan, row, centre):
     ranges, bearings = scan.ranges[row].astype(float), scan.bearings
     beams = len(bearings)
     corners = []
-    for i, (distance, bearing) in enumerate(zip(ranges, bearings, strict=True)):
-        if math.isnan(distance):
+    for i, (measured, bearing) in enumerate(zip(ranges, bearings, strict=True)):
+        if math.isnan(measured):
             run = _run_without_evidence(ranges, i)
             if run[0] > 0 and run[1] < beams and run[1] - run[0] <= 2:
                 continue
             kind, distance = DISC, blind
-        elif math.isfinite(distance):
-            kind = HIT
+        elif math.isfinite(measured):
+            kind, distance = HIT, measured
         else:
             kind, distance = FREE, scan.clear_range
         corners.append((*_place(first, last, i / max(1, beams - 1), distance, bearing, centre), kind))
@@ -77,9 +79,10 @@ def _run_without_evidence(ranges, i):
 
 def _place(first, last, part, distance, bearing, centre):
     """End of a beam relative to the node: position blended, rotation turned evenly about the vertical."""
-    turn = math.remainder(
-        math.atan2(last[1, 0], last[0, 0]) - math.atan2(first[1, 0], first[0, 0]), 2 * math.pi
-    ) * part
+    turn = (
+        math.remainder(math.atan2(last[1, 0], last[0, 0]) - math.atan2(first[1, 0], first[0, 0]), 2 * math.pi)
+        * part
+    )
     x, y = (first[a, 0] * math.cos(bearing) + first[a, 1] * math.sin(bearing) for a in (0, 1))
     x, y = x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
     at = [first[a, 3] + (last[a, 3] - first[a, 3]) * part - centre[a] for a in (0, 1)]

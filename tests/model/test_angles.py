@@ -43,7 +43,9 @@ def test_a_point_a_rounding_below_plus_x_wraps_into_the_circle(y):
 
 
 def test_the_centre_itself_has_a_bearing():
-    assert [bearing(x, y) for x in (0.0, -0.0) for y in (0.0, -0.0)] == pytest.approx([0, 0, math.pi, math.pi])
+    assert [bearing(x, y) for x in (0.0, -0.0) for y in (0.0, -0.0)] == pytest.approx(
+        [0, 0, math.pi, math.pi]
+    )
 
 
 def test_bearings_rise_with_the_angle():

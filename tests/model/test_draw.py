@@ -18,7 +18,11 @@ def drawn(level, scans, *, step_s=0.1, nodes=None, block=None, keys=None, stamps
     nodes = np.zeros(scans, np.int64) if nodes is None else nodes
     stamps = (np.arange(scans) * step_s * SECOND).astype(np.int64) if stamps is None else stamps
     count = int(nodes.max(initial=0)) + 1
-    keys = np.array([chance.key(0, Node(n, 0), level.name) for n in range(count)], np.uint64) if keys is None else keys
+    keys = (
+        np.array([chance.key(0, Node(n, 0), level.name) for n in range(count)], np.uint64)
+        if keys is None
+        else keys
+    )
     draw = Draw(level)
     draw.add_nodes(count)
     taken = np.zeros(scans, bool)
@@ -96,7 +100,9 @@ def test_every_node_draws_for_itself():
 
 
 def test_in_seconds_the_rate_of_scans_does_not_matter():
-    level = Level("level", 10, 60.0, in_seconds=True)  # a tenth of the window each 9.12 s: q = 0.1149 a second
+    level = Level(
+        "level", 10, 60.0, in_seconds=True
+    )  # a tenth of the window each 9.12 s: q = 0.1149 a second
     per_second = {}
     for rate in (5, 10, 40):
         taken = drawn(level, 600 * rate, step_s=1 / rate)

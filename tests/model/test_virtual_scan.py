@@ -229,7 +229,10 @@ def test_the_far_side_of_a_shadow_beside_a_door_is_not_learnt():
     points = np.array(robot) + scan.ranges[0].astype(float)[:, None] * np.stack(
         (np.cos(ALL_ROUND), np.sin(ALL_ROUND)), 1
     )
-    hidden = cast(OFFICE, *node, np.arctan2(*(points - node).T[::-1])) < np.linalg.norm(points - node, axis=1) - 0.5
+    hidden = (
+        cast(OFFICE, *node, np.arctan2(*(points - node).T[::-1]))
+        < np.linalg.norm(points - node, axis=1) - 0.5
+    )
     assert hidden.sum() > 10  # the scene is worth its name
     hit = np.isfinite(seen)
     assert hit.sum() > 250
@@ -376,7 +379,9 @@ def test_a_full_circle_without_the_doubled_beam_closes():
 
 def test_a_node_on_a_wall_harms_nothing():
     for x, y in ((3.0, 0.0), (3.0, 3.0), (2.9999, 0.0), (3.0001, 0.0)):
-        ranges, judged = virtual_scans(look_around(SQUARE, 2.0, 0.0, 0.0, ALL_ROUND), np.array([[x, y]]), 360, 10.0)
+        ranges, judged = virtual_scans(
+            look_around(SQUARE, 2.0, 0.0, 0.0, ALL_ROUND), np.array([[x, y]]), 360, 10.0
+        )
         assert ranges.shape == (1, 360)
         assert not (ranges[~judged] != UNSEEN).any()
 

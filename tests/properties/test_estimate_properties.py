@@ -86,7 +86,11 @@ def test_nodes_estimated_together_are_estimated_as_if_alone():
         assert_estimate_is_the_references(memory, together, row)
 
 
-@given(st.lists(st.integers(0, 2**32), min_size=2, max_size=6), st.integers(1, 8), st.sampled_from([4, 5, 12, 16]))
+@given(
+    st.lists(st.integers(0, 2**32), min_size=2, max_size=6),
+    st.integers(1, 8),
+    st.sampled_from([4, 5, 12, 16]),
+)
 @settings(max_examples=120)
 def test_an_estimate_depends_on_its_own_node_alone(seeds, scans, angle_bins):
     """Small memories are full of ties: they too must be decided the same in any company."""

@@ -5,32 +5,41 @@ chains. Scores of pairs are never above 0: where each row's best state by itself
 that is the optimum. Only the chains in conflict are searched, all of them as one circle joined by links that cost nothing.
 """
 
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.closed_path import IMPOSSIBLE, best_closed_path
-from timemap_cli.model.vote import Scores
-
 Ints = npt.NDArray[np.int64]
 
 
-def best_states(scores: Scores, rows: Ints, angle_bins: int) -> Ints:
+class Coupling(Protocol):
+    """What states cost side by side; scores are never above 0."""
+
+    edges: Ints  # (edges, 2) neighbouring rows, in the direction of the bearing
+
+    def of_states(self, chosen: Ints) -> Ints:
+        """Score of each edge (edges,) when every row shows its chosen state (rows,)."""
+
+    def tables(self, edges: Ints) -> Ints:
+        """Scores (k, states, states) of these edges, for every two states."""
+
+
+def best_states(unary: Ints, coupling: Coupling, rows: Ints, angle_bins: int) -> Ints:
     """States (rows,) of the paths with the best score, for the circles of all nodes at once.
 
-    `rows` holds node * angle_bins + angle bin of every row, ascending.
+    `unary` (rows, states) scores each state by itself; `rows` holds node * angle_bins + angle bin, ascending.
     """
-    best = scores.unary.argmax(axis=1)
-    if not len(scores.edges):
-        return best
-    here, there = scores.edges.T
-    cost = scores.pairwise[np.arange(len(here)), best[here], best[there]]
-    if not cost.any():
+    best = unary.argmax(axis=1)
+    here = coupling.edges[:, 0]
+    conflict = here[coupling.of_states(best) < 0]
+    if not len(conflict):
         return best
     link = np.full(len(rows), -1)  # the edge that leads on from a row
     link[here] = np.arange(len(here))
-    conflict = here[cost < 0]
     for chain in _chains(rows, link, conflict, angle_bins):
-        best[chain] = _search(scores, chain, link)
+        best[chain] = _search(unary, coupling, chain, link[chain])
     return best
 
 
@@ -51,23 +60,22 @@ def _chains(rows: Ints, link: Ints, conflict: Ints, angle_bins: int) -> list[Int
     wanted[chain[conflict]] = True
     ordered = order[wanted[chain[order]]]
     closed = breaks[node[ordered]] == 0
-    circles = [ordered[closed & (node[ordered] == n)] for n in np.unique(node[ordered[closed]])]
+    circles = [ordered[closed & (node[ordered] == n)] for n in sorted(set(node[ordered[closed]].tolist()))]
     return [part for part in (ordered[~closed], *circles) if len(part)]
 
 
-def _search(scores: Scores, chain: Ints, link: Ints) -> Ints:
-    """Best states (n,) of rows in order, each linked to the next only where they are neighbours."""
-    exists = scores.unary[chain] > IMPOSSIBLE
+def _search(unary: Ints, coupling: Coupling, chain: Ints, link: Ints) -> Ints:
+    """Best states (n,) of rows in order, each linked by an edge (n,) to the next, or not at all."""
+    exists = unary[chain] > IMPOSSIBLE
     size = int(exists.sum(axis=1).max())
-    edge = link[chain]
-    place, length = _aligned(edge < 0)
-    unary = np.full((length, size), IMPOSSIBLE)
-    unary[:, 0] = 0
-    unary[place] = scores.unary[chain, :size]
+    place, length = _aligned(link < 0)
+    of_rows = np.full((length, size), IMPOSSIBLE)
+    of_rows[:, 0] = 0
+    of_rows[place] = unary[chain, :size]
+    linked = np.flatnonzero(link >= 0)
     pairwise = np.zeros((length, size, size), np.int64)
-    linked = np.flatnonzero(edge >= 0)
-    pairwise[place[linked]] = scores.pairwise[edge[linked], :size, :size]
-    return best_closed_path(unary, pairwise)[0][place]
+    pairwise[place[linked]] = coupling.tables(link[linked])[:, :size, :size]
+    return best_closed_path(of_rows, pairwise)[0][place]
 
 
 def _aligned(ends: npt.NDArray[np.bool_]) -> tuple[Ints, int]:

@@ -10,7 +10,7 @@ from timemap_cli.model.chains import best_states
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States, states_from_data
 from timemap_cli.model.virtual_scan import UNSEEN, Ranges
-from timemap_cli.model.vote import Shares, shares, vote
+from timemap_cli.model.vote import Forbidding, Shares, shares, votes
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -33,7 +33,8 @@ def estimate(memory: Remembered, state_width: float) -> Estimated:
     """Estimate m nodes of one level by the vote; `state_width` [m] as in `states_from_data`."""
     states = states_from_data(memory, state_width)
     share = shares(memory, states)
-    best = best_states(vote(memory, states, share), states.rows, memory.samples.shape[1])
+    angle_bins = memory.samples.shape[1]
+    best = best_states(votes(memory, states, share), Forbidding(memory, states), states.rows, angle_bins)
     return assembled(memory, states, share, best)
 
 
@@ -56,9 +57,7 @@ def _measured(memory: Remembered, states: States, best: Ints) -> Ranges:
 
     Where the samples of the state are gone, its pairs' ranges stand in for them.
     """
-    low = states.starts[np.arange(len(best)), best]
-    padded = np.append(states.starts, np.full((len(best), 1), UNSEEN, np.uint16), axis=1)
-    high = padded[np.arange(len(best)), best + 1]
+    low, high = states.span(np.arange(len(best)), best)
     samples = np.sort(memory.samples.reshape(-1, memory.window), axis=1)
     n_samples = memory.n_samples.reshape(-1)
     begin, end = np.zeros_like(n_samples), n_samples.copy()
@@ -67,12 +66,12 @@ def _measured(memory: Remembered, states: States, best: Ints) -> Ranges:
     lost = np.flatnonzero(begin[states.rows] == end[states.rows])
     begin, end = _between(states.known[states.rows[lost]], low[lost], high[lost])
     median[states.rows[lost]] = states.known[states.rows[lost], (begin + end - 1) // 2]
-    alone = np.flatnonzero((n_samples == 0) & (states.n_known > 0))
-    alone = np.setdiff1d(alone, states.rows, assume_unique=True)
+    alone = (n_samples == 0) & (states.n_known > 0)
+    alone[states.rows] = False
     median[alone] = states.known[alone, (states.n_known[alone] - 1) // 2]
     return median
 
 
 def _between(ordered: Ranges, low: Ranges, high: Ranges) -> tuple[Ints, Ints]:
     """First place, and one past the last, of each row's values in [low, high)."""
-    return (ordered < low[:, None]).sum(axis=1), (ordered < high[:, None]).sum(axis=1)
+    return (ordered < low).sum(axis=1), (ordered < high).sum(axis=1)

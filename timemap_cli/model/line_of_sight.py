@@ -20,19 +20,18 @@ FAR = 65535  # [mm] as far as the table reaches
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """The outlines of n scans seen from their nodes, in half angle bins: ray 2 i is the border of angle bin i, ray
-    2 i + 1 its centre."""
+    """The outlines of n scans seen from their nodes along the borders of the angle bins; border i is where bin i begins."""
 
-    bearing: Floats  # (n, vertices + 1) in half angle bins, [0, 2 * angle_bins)
-    free: npt.NDArray[np.uint16]  # (n, 2 * angle_bins) [mm] along each ray to the first edge of the outline
-    edge: npt.NDArray[np.uint16]  # (n, 2 * angle_bins) number of that edge's first vertex
-    folded: Bools  # (n, 2 * angle_bins) between ray k and k + 1 the outline runs backwards somewhere
+    bearing: Floats  # (n, vertices + 1) in angle bins, [0, angle_bins)
+    free: npt.NDArray[np.uint16]  # (n, angle_bins) [mm] along each border to the first edge of the outline
+    edge: npt.NDArray[np.uint16]  # (n, angle_bins) number of that edge's first vertex
+    folded: Bools  # (n, angle_bins) the outline runs backwards somewhere in the angle bin
     encloses: Bools  # (n,) the node's centre is inside the outline
 
 
 def line_of_sight(outlines: Outlines, angle_bins: int) -> Sight:
-    """Intersect 2 * angle_bins rays from each node's centre with the outline of its scan."""
-    rays = 2 * angle_bins
+    """Intersect rays from each node's centre, along the borders of its angle bins, with the outline of its scan."""
+    rays = angle_bins
     bearing = quarter_turns(outlines.x, outlines.y)
     bearing *= np.float32(rays / 4)
     start = bearing[:, :-1]
@@ -89,16 +88,22 @@ def _whole_numbers(chosen: Ints, first: Floats, last: Floats, rays: int) -> tupl
 
     Returns the edge and the number, each (count,). An edge spans less than the circle and starts on it.
     """
-    start = first.ravel().take(chosen)
-    counts = (last.ravel().take(chosen) - start).astype(np.int64)
+    start = first.ravel().take(chosen).astype(np.int64)
+    counts = last.ravel().take(chosen).astype(np.int64)
+    counts -= start
     counts += 1
     ends = np.cumsum(counts)
     total = int(ends[-1]) if len(ends) else 0
+    steps = np.zeros(total, np.int64)
+    steps[ends[:-1]] = 1
+    owner = np.cumsum(steps)
+    start -= ends
+    start += counts
     number = np.arange(total)
-    number += np.repeat(start.astype(np.int64) - (ends - counts), counts)
+    number += start.take(owner)
     number += (number < 0) * rays
     number -= (number >= rays) * rays
-    return np.repeat(chosen, counts), number
+    return chosen.take(owner), number
 
 
 @cache

@@ -12,7 +12,6 @@ Poses = npt.NDArray[np.float64]
 
 BLIND_MARGIN = 0.1  # [m] by which the disc where the robot stands reaches beyond the node's centre
 LARGEST_DISC = 2.5  # [m] a node farther away than this must have been seen
-BRIDGED_RAYS = 2  # as many rays in a row without evidence do not open the outline
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,16 +92,12 @@ def _place(
 
 
 def _bridge(x: Floats, y: Floats, hit: Bools, disc: Bools, missing: Bools) -> None:
-    """Lay vertices of short runs without evidence onto the vertex before them, in place."""
-    lone = missing[:, 1:-1] & ~(missing[:, :-2] & missing[:, 2:])
-    if not lone.any():
-        return
-    width = missing.shape[1]
-    index = np.arange(width)
-    before = np.maximum.accumulate(np.where(missing, -1, index), axis=1)
-    after = np.minimum.accumulate(np.where(missing, width, index)[:, ::-1], axis=1)[:, ::-1]
-    short = missing & (after - before - 1 <= BRIDGED_RAYS) & (before >= 0) & (after < width)
-    row, column = np.nonzero(short)
-    source = before[row, column]
-    for vertex in (x, y, hit, disc):
-        vertex[row, column] = vertex[row, source]
+    """Lay vertices of one or two rays without evidence onto the vertex before them, in place."""
+    there = ~missing
+    one = missing[:, 1:-1] & there[:, :-2] & there[:, 2:]
+    two = missing[:, 1:-2] & missing[:, 2:-1] & there[:, :-3] & there[:, 3:]
+    for run, length in ((one, 1), (two, 2)):
+        row, before = np.nonzero(run)
+        for step in range(1, length + 1):
+            for vertex in (x, y, hit, disc):
+                vertex[row, before + step] = vertex[row, before]

@@ -9,9 +9,9 @@ from timemap_cli.model.chains import best_states
 from timemap_cli.model.closed_path import IMPOSSIBLE, SCALE
 from timemap_cli.model.estimator import Estimated, assembled
 from timemap_cli.model.memory import Remembered
-from timemap_cli.model.states import States, known_ranges
+from timemap_cli.model.states import States, borders_at, known_ranges
 from timemap_cli.model.virtual_scan import CLEAR, UNSEEN
-from timemap_cli.model.vote import Scores, neighbouring_rows, pair_counts, shares
+from timemap_cli.model.vote import neighbouring_rows, pair_counts, shares
 
 Floats = npt.NDArray[np.float64]
 
@@ -24,10 +24,13 @@ def estimate_as_in_paper(memory: Remembered, range_bin: float) -> Estimated:
     memory = replace(memory, ages=np.zeros_like(memory.ages))  # the paper's samples do not age
     states = states_from_range_bins(memory, range_bin)
     share = shares(memory, states)
-    scores = _scores(memory, states, share.states, strict=True)
-    best = best_states(scores, states.rows, angle_bins)
-    if _is_broken(scores, best):
-        best = best_states(_scores(memory, states, share.states, strict=False), states.rows, angle_bins)
+    own = share.states / np.maximum(share.states.sum(axis=1, keepdims=True), 1e-300)
+    weights = _EdgeWeights(memory, states, own, strict=True)
+    prior = _prior(states, own, angle_bins)
+    best = best_states(prior, weights, states.rows, angle_bins)
+    if (weights.of_states(best) == IMPOSSIBLE).any():
+        weights = _EdgeWeights(memory, states, own, strict=False)
+        best = best_states(prior, weights, states.rows, angle_bins)
     return assembled(memory, states, share, best)
 
 
@@ -39,30 +42,37 @@ def states_from_range_bins(memory: Remembered, range_bin: float) -> States:
     new = cell[:, 1:] != cell[:, :-1]
     new &= known[:, 1:] < UNSEEN
     rows = np.flatnonzero(n_known)
-    row, column = np.nonzero(new[rows])
-    number = np.cumsum(new[rows], axis=1)[row, column]
-    starts = np.full((len(rows), int(number.max(initial=0)) + 1), UNSEEN, np.uint16)
-    starts[:, 0] = 0
-    starts[row, number] = known[rows[row], column + 1]
-    return States(rows, starts, known, n_known)
+    return States(rows, borders_at(known[rows], new[rows]), known, n_known)
 
 
-def _scores(memory: Remembered, states: States, share: Floats, *, strict: bool) -> Scores:
-    """Log of the caption's weights in the paper's Fig. 5, and the prior at the angle bin with the fewest states.
+class _EdgeWeights:
+    """Log of the weights in the caption of the paper's Fig. 5: a pair's count among all counts of its angle bin.
 
-    A weight is a pair's count among all counts of its angle bin; a state without any pair takes the next angle bin's
-    own distribution. Never seen side by side is impossible, or, not `strict`, MISSING_EDGE.
+    A state without any pair takes the next angle bin's own distribution. What was never seen side by side is
+    impossible, or, not `strict`, as good as.
     """
-    angle_bins = memory.samples.shape[1]
-    edges = neighbouring_rows(states.rows, angle_bins)
-    count = pair_counts(memory, states, edges).astype(np.float64)
-    own = share / np.maximum(share.sum(axis=1, keepdims=True), 1e-300)
-    of_state, of_bin = count.sum(axis=2, keepdims=True), count.sum(axis=(1, 2), keepdims=True)
-    weight = np.where(of_state > 0, count / np.maximum(of_bin, 1), own[edges[:, 1], None, :])
-    unary = np.where(states.exists, 0, IMPOSSIBLE)
+
+    def __init__(self, memory: Remembered, states: States, own: Floats, *, strict: bool) -> None:
+        self.edges = neighbouring_rows(states.rows, memory.samples.shape[1])
+        count = pair_counts(memory, states, self.edges).astype(np.float64)
+        of_state, of_bin = count.sum(axis=2, keepdims=True), count.sum(axis=(1, 2), keepdims=True)
+        following = own[self.edges[:, 1], None, :]
+        self._tables = _log(np.where(of_state > 0, count / np.maximum(of_bin, 1), following), strict=strict)
+
+    def of_states(self, chosen: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+        here, there = self.edges.T
+        return self._tables[np.arange(len(here)), chosen[here], chosen[there]]
+
+    def tables(self, edges: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+        return self._tables[edges]
+
+
+def _prior(states: States, own: Floats, angle_bins: int) -> npt.NDArray[np.int64]:
+    """Scores of the states by themselves: only the first angle bin has any, the log of its own distribution."""
+    scores = np.where(states.exists, 0, IMPOSSIBLE)
     first = _first_rows(states, angle_bins)
-    unary[first] = np.where(states.exists[first], _log(own[first], strict=False), IMPOSSIBLE)
-    return Scores(unary, edges, _log(weight, strict=strict))
+    scores[first] = np.where(states.exists[first], _log(own[first], strict=False), IMPOSSIBLE)
+    return scores
 
 
 def _first_rows(states: States, angle_bins: int) -> npt.NDArray[np.int64]:
@@ -75,9 +85,3 @@ def _first_rows(states: States, angle_bins: int) -> npt.NDArray[np.int64]:
 def _log(probability: Floats, *, strict: bool) -> npt.NDArray[np.int64]:
     score = np.rint(np.log(np.maximum(probability, MISSING_EDGE)) * SCALE).astype(np.int64)
     return np.where(probability > 0, score, IMPOSSIBLE) if strict else score
-
-
-def _is_broken(scores: Scores, best: npt.NDArray[np.int64]) -> bool:
-    """Whether a chosen path steps over a pair that was never seen."""
-    here, there = scores.edges.T
-    return bool((scores.pairwise[np.arange(len(here)), best[here], best[there]] == IMPOSSIBLE).any())

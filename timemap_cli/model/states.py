@@ -27,25 +27,35 @@ _CLEAR_PLACE, _UNSEEN_PLACE = 1 << 22, 1 << 23  # on that scale, beyond every ra
 class States:
     """The angle bins of m nodes that may show more than one thing.
 
-    State i of a row holds the ranges from starts[i] up to but without starts[i + 1].
+    State i of a row holds the ranges from borders[i] up to but without borders[i + 1].
     """
 
     rows: Ints  # (rows,) node * angle_bins + angle bin, ascending
-    starts: Ranges  # (rows, states) [mm] ascending, the first 0, unused ones UNSEEN
+    borders: Ranges  # (rows, states + 1) [mm] ascending, the first 0; UNSEEN from the end of the row's last state
     known: Ranges  # (m * angle_bins, 3 * window) [mm] all ranges known in any angle bin, ascending
     n_known: Ints  # (m * angle_bins,) how many
 
     @property
+    def size(self) -> int:
+        """The most states that any row has."""
+        return self.borders.shape[1] - 1
+
+    @property
     def exists(self) -> Bools:
         """(rows, states) which states there are."""
-        return self.starts < UNSEEN
+        return self.borders[:, :-1] < UNSEEN
 
-    def labels(self, values: Ranges, rows: Ints | slice = slice(None)) -> npt.NDArray[np.uint8]:
-        """Number of the state of each value (rows, k); UNSEEN gives the last number."""
-        starts = self.starts[rows]
-        label = np.zeros(values.shape, np.uint8)
-        for state in range(1, starts.shape[1]):
-            label += values >= starts[:, state, None]
+    def span(self, rows: Ints, state: Ints) -> tuple[Ranges, Ranges]:
+        """Where one state of each of these rows begins and ends (k, 1) [mm], the end excluded."""
+        return self.borders[rows, state, None], self.borders[rows, state + 1, None]
+
+    def labels(self, values: Ranges, rows: Ints) -> npt.NDArray[np.uint8]:
+        """Number of the state of each value (k, n) of these rows; what UNSEEN gets means nothing."""
+        borders = self.borders[rows]
+        label = (values >= borders[:, 1:2]).astype(np.uint8)
+        for state in range(2, self.size):
+            more = np.flatnonzero(borders[:, state] < UNSEEN)  # ever fewer
+            label[more] += values[more] >= borders[more, state, None]
         return label
 
 
@@ -73,7 +83,7 @@ def states_from_data(memory: Remembered, width: float) -> States:
     _cut_wide_groups(cut, place, n_known[candidates], size)
     split = np.flatnonzero(cut.any(axis=1))
     rows = candidates[split]
-    return States(rows, _starts(known[rows], cut[split], place[split]), known, n_known)
+    return States(rows, _borders(known[rows], cut[split], place[split]), known, n_known)
 
 
 def _may_split(known: Ranges, n_known: Ints, size: int) -> Ints:
@@ -81,27 +91,34 @@ def _may_split(known: Ranges, n_known: Ints, size: int) -> Ints:
 
     That scale grows ever slower with range: two ranges are at most as far apart on it as the slope at the nearest makes them.
     """
-    nearest, farthest = known[:, 0], known[np.arange(len(known)), np.maximum(n_known, 1) - 1]
+    last = np.maximum(n_known, 1) - 1
+    nearest, farthest = known[:, 0], known[np.arange(len(known)), last]
     widening = np.maximum(1, nearest / (STRETCH_FROM * 1000))
-    gap = np.minimum(np.floor(widening * (size // 2 - 1) * _UNIT * 1000), CLEAR).astype(np.uint16)
-    wide = known[:, 1:] - known[:, :-1] > gap[:, None]
-    wide &= known[:, 1:] < UNSEEN
-    return np.flatnonzero(wide.any(axis=1) | (farthest - nearest > widening * (2 * size - 1) * _UNIT * 1000))
+    gaps = known[:, 1:] - known[:, :-1]
+    unfilled = np.flatnonzero(last < gaps.shape[1])
+    gaps[unfilled, last[unfilled]] = 0  # from the last range to the first empty place
+    split = gaps.max(axis=1) > widening * (size // 2 - 1) * _UNIT * 1000
+    return np.flatnonzero(split | (farthest - nearest > widening * (2 * size - 1) * _UNIT * 1000))
 
 
-def _starts(known: Ranges, cut: Bools, place: Stretched) -> Ranges:
-    """First range of each state (rows, states); where there are too many, the smallest gaps are closed again."""
+def _borders(known: Ranges, cut: Bools, place: Stretched) -> Ranges:
+    """Borders of the states (rows, states + 1); where there are too many, the smallest gaps are closed again."""
     crowded = np.flatnonzero(cut.sum(axis=1) >= MAX_STATES)
     for row in crowded:  # rare: a laser that returns noise
         gaps = np.where(cut[row], np.diff(place[row]), -1)
         cut[row] = False
         cut[row, np.argsort(-gaps, kind="stable")[: MAX_STATES - 1]] = True
+    return borders_at(known, cut)
+
+
+def borders_at(known: Ranges, cut: Bools) -> Ranges:
+    """Borders of states (rows, states + 1) from ascending ranges (rows, k) and where they are cut (rows, k - 1)."""
     row, column = np.nonzero(cut)
-    number = np.cumsum(cut, axis=1)[row, column]
-    starts = np.full((len(known), int(number.max(initial=0)) + 1), UNSEEN, np.uint16)
-    starts[:, 0] = 0
-    starts[row, number] = known[row, column + 1]
-    return starts
+    number = np.arange(1, len(row) + 1) - np.searchsorted(row, row)  # 1, 2, ... within each row
+    borders = np.full((len(known), int(number.max(initial=0)) + 2), UNSEEN, np.uint16)
+    borders[:, 0] = 0
+    borders[row, number] = known[row, column + 1]
+    return borders
 
 
 def _cut_wide_groups(cut: Bools, place: Stretched, count: Ints, size: int) -> None:
@@ -144,8 +161,10 @@ def _densest_windows(place: Stretched, groups: Ints, size: int) -> tuple[Ints, I
     apart = np.int64(4 * _CLEAR_PLACE)
     key = place[row[owner], column] + owner * apart
     inside = np.searchsorted(key, key + size, side="right") - np.arange(len(key))
-    order = np.lexsort((-inside, owner))  # stable: the first of equals stays first
-    best = order[np.cumsum(length) - length]
+    first = np.cumsum(length) - length
+    most = np.maximum.reduceat(inside, first)
+    fullest = np.flatnonzero(inside == np.repeat(most, length))
+    best = fullest[np.searchsorted(fullest, first)]
     return column[best], column[best] + inside[best]
 
 

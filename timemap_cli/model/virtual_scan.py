@@ -5,12 +5,13 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from timemap_cli.model.line_of_sight import MILLIMETRES, Sight, line_of_sight
+from timemap_cli.model.line_of_sight import FAR, MILLIMETRES, Sight, line_of_sight
 from timemap_cli.model.outline import Outlines, outlines
 from timemap_cli.model.sweeps import Sweeps
 
 UNSEEN = 65535  # no evidence in this angle bin
 CLEAR = 65534  # nothing out to the node's radius
+_BLOCKED = 65533  # not UNSEEN only in that something stands in the way
 MAX_RADIUS = 60.0  # [m] what 16 bits of millimetres hold, with room for the codes
 
 SIGHT_TOLERANCE = 100  # [mm] by which a hit may lie behind the outline: noise, and pose error within a scan
@@ -47,52 +48,54 @@ def _from_nodes(
     sight = line_of_sight(outline, angle_bins)
     distance = _distances(outline)
     reach = round(radius * 1000)
-    ranges = _nearest_hits(outline, sight, distance, angle_bins, reach)
-    _close_holes(ranges, outline, sight, distance, reach)
-    ranges[(ranges == UNSEEN) & _clear(outline, sight, distance, reach)] = CLEAR
+    ranges = _nearest_hits(outline, sight, distance, reach)
+    empty = ranges == UNSEEN
+    ranges[empty & _clear(outline, sight, distance, reach)] = CLEAR
+    _close_holes(ranges, empty, outline, sight, distance, reach)
+    ranges[ranges == _BLOCKED] = UNSEEN
     ranges[~sight.encloses] = UNSEEN
     return ranges, sight.encloses
 
 
 def _distances(outline: Outlines) -> npt.NDArray[np.float32]:
-    """Distance of every vertex from the node [mm, whole] (n, vertices + 1)."""
+    """Distance of every vertex from the node [mm, whole, at most FAR] (n, vertices + 1)."""
     distance = outline.x * outline.x
     distance += outline.y * outline.y
     np.sqrt(distance, out=distance)
     distance *= MILLIMETRES
-    return np.rint(distance, out=distance)
+    np.rint(distance, out=distance)
+    return np.minimum(distance, np.float32(FAR), out=distance)
 
 
 def _nearest_hits(
-    outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], angle_bins: int, reach: int
+    outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int
 ) -> Ranges:
-    """The nearest hit in each angle bin (n, angle_bins) that nothing hides from the node."""
-    n, rays = sight.free.shape
-    candidate = distance <= reach
-    candidate &= outline.hit
-    candidate[:, -1] = False
-    chosen = np.flatnonzero(candidate)
-    cell = sight.bearing.ravel().take(chosen).astype(np.int64)
-    row = chosen // candidate.shape[1]
-    row *= rays
-    cell += row
-    found = distance.ravel().take(chosen)
+    """The nearest hit in each angle bin (n, angle_bins) that nothing hides from the node.
+
+    Where none is, _BLOCKED if the outline has another vertex there within reach, else UNSEEN.
+    """
+    n, angle_bins = sight.free.shape
+    near = distance <= reach
+    near[:, -1] = False
+    cell = sight.bearing.astype(np.int64)
+    cell += np.arange(0, n * angle_bins, angle_bins)[:, None]
+    value = distance.astype(np.uint16)
+    value[~outline.hit] = _BLOCKED
     # A hit can only be hidden where the outline runs backwards: elsewhere each ray leaves it once, at the hit itself.
-    doubtful = np.flatnonzero(sight.folded.ravel().take(cell))
-    bearing = sight.bearing.ravel().take(chosen.take(doubtful))
-    hidden = doubtful[found.take(doubtful) > _free_towards(sight, cell.take(doubtful), bearing) + SIGHT_TOLERANCE]
-    value = found.astype(np.uint16)
-    value[hidden] = UNSEEN
-    nearest = np.full(n * angle_bins, UNSEEN, np.uint16)
-    cell >>= 1  # two cells an angle bin; rays is even, so rows stay apart
-    np.minimum.at(nearest, cell, value)
-    return nearest.reshape(n, angle_bins)
+    doubtful = np.flatnonzero(near & outline.hit & sight.folded.ravel().take(cell))
+    free = _free_towards(sight, cell.ravel().take(doubtful), sight.bearing.ravel().take(doubtful))
+    hidden = doubtful[distance.ravel().take(doubtful) > free + SIGHT_TOLERANCE]
+    value.reshape(-1)[hidden] = _BLOCKED
+    cell[~near] = n * angle_bins  # beside the table
+    nearest = np.full(n * angle_bins + 1, UNSEEN, np.uint16)
+    np.minimum.at(nearest, cell.reshape(-1), value.reshape(-1))
+    return nearest[:-1].reshape(n, angle_bins)
 
 
 def _free_towards(
     sight: Sight, cell: npt.NDArray[np.int64], bearing: npt.NDArray[np.float32]
 ) -> npt.NDArray[np.float32]:
-    """Free distance [mm] at bearings between two rays, interpolated."""
+    """Free distance [mm] at bearings between two borders, interpolated."""
     rays = sight.free.shape[1]
     free = sight.free.ravel()
     following = cell + 1
@@ -101,12 +104,23 @@ def _free_towards(
     return np.asarray(here + (bearing - np.floor(bearing)) * (there - here), np.float32)
 
 
+def _clear(outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int) -> Bools:
+    """Angle bins (n, angle_bins) of which both borders were seen free beyond the radius."""
+    far = sight.free > reach
+    if (outline.disc & (distance > reach)).any():  # else no ray ends so far away on the robot's own disc
+        row, ray = np.nonzero(far)
+        edge = sight.edge[row, ray].astype(np.int64)
+        far[row, ray] = ~(outline.disc[row, edge] & outline.disc[row, edge + 1])
+    return np.asarray(far & np.roll(far, -1, axis=1))
+
+
 def _close_holes(
-    ranges: Ranges, outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int
+    ranges: Ranges, empty: Bools, outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int
 ) -> None:
-    """Give an empty angle bin between two near hits of one surface the range of the nearer, in place."""
-    row, column = np.nonzero((ranges == UNSEEN) & (sight.free[:, 1::2] <= reach))
-    edge = sight.edge[row, 2 * column + 1].astype(np.int64)
+    """Give an angle bin between two near hits of one surface the range of the nearer, in place."""
+    same = sight.edge == np.roll(sight.edge, -1, axis=1)
+    row, column = np.nonzero(empty & same & (sight.free <= reach))
+    edge = sight.edge[row, column].astype(np.int64)
     surface = outline.hit[row, edge] & outline.hit[row, edge + 1]
     row, column, edge = row[surface], column[surface], edge[surface]
     dx = outline.x[row, edge + 1] - outline.x[row, edge]
@@ -114,14 +128,3 @@ def _close_holes(
     nearer = np.minimum(distance[row, edge], distance[row, edge + 1])
     closed = (dx * dx + dy * dy <= HOLE_EDGE * HOLE_EDGE) & (nearer <= reach)
     ranges[row[closed], column[closed]] = nearer[closed].astype(np.uint16)
-
-
-def _clear(outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int) -> Bools:
-    """Angle bins (n, angle_bins) of which both borders and the centre were seen free beyond the radius."""
-    far = sight.free > reach
-    if (outline.disc & (distance > reach)).any():  # else no ray ends so far away on the robot's own disc
-        row, ray = np.nonzero(far)
-        edge = sight.edge[row, ray].astype(np.int64)
-        far[row, ray] = ~(outline.disc[row, edge] & outline.disc[row, edge + 1])
-    border = far[:, ::2]
-    return np.asarray(far[:, 1::2] & border & np.roll(border, -1, axis=1))

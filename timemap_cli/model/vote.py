@@ -13,7 +13,7 @@ import numpy.typing as npt
 from timemap_cli.model.closed_path import IMPOSSIBLE, SCALE
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States
-from timemap_cli.model.virtual_scan import UNSEEN
+from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -21,15 +21,6 @@ Floats = npt.NDArray[np.float64]
 FORBIDDEN = 100.0  # score of two states that were never seen together though they should have been
 PAIR_PRIOR = 0.1  # pairs added to both sides of a ratio, so that an empty table says nothing
 OLDEST = 1e-4  # least weight of a sample: where all are old, their number decides
-
-
-@dataclass(frozen=True, slots=True)
-class Scores:
-    """What the best closed path is chosen by; scores are whole numbers of 1 / SCALE."""
-
-    unary: Ints  # (rows, states)
-    edges: Ints  # (edges, 2) neighbouring rows, in the direction of the bearing
-    pairwise: Ints  # (edges, states, states), never above 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,26 +40,50 @@ def shares(memory: Remembered, states: States) -> Shares:
     full = np.maximum(1, np.minimum(memory.taken, window)) * float(SCALE)
     full = np.repeat(full, angle_bins)
     known = weight.sum(axis=1, dtype=np.int32) / full
-    per_state = _sums(states.labels(samples[states.rows]), weight[states.rows], states.starts.shape[1])
+    rows = np.arange(len(states.rows))
+    per_state = _sums(states.labels(samples[states.rows], rows), weight[states.rows], states.size)
     return Shares(known, per_state / full[states.rows, None])
 
 
-def vote(memory: Remembered, states: States, share: Shares) -> Scores:
-    """Scores of the rows of `states`.
-
-    Unary: log of the share of the window that does not contradict a state. Pairwise: where two states are rarer side by side than chance
-    would have them by half, they are forbidden; else nothing.
-    """
-    window = memory.window
+def votes(memory: Remembered, states: States, share: Shares) -> Ints:
+    """Score of each state (rows, states): log of the share of the window that does not contradict it."""
     against = share.known[states.rows, None] - share.states
-    unary = _whole(np.log(np.maximum(0.5 / window, 1 - against)))
-    unary[~states.exists] = IMPOSSIBLE
-    edges = neighbouring_rows(states.rows, memory.samples.shape[1])
-    count = pair_counts(memory, states, edges)
-    row, column = count.sum(axis=2, keepdims=True), count.sum(axis=1, keepdims=True)
-    expected = row * column / np.maximum(1, count.sum(axis=(1, 2), keepdims=True))
+    scores = _whole(np.log(np.maximum(0.5 / memory.window, 1 - against)))
+    scores[~states.exists] = IMPOSSIBLE
+    return scores
+
+
+class Forbidding:
+    """What cannot stand side by side: states that are rarer as pairs than chance would have them, by half and more."""
+
+    def __init__(self, memory: Remembered, states: States) -> None:
+        self._memory = memory
+        self._states = states
+        self.edges = neighbouring_rows(states.rows, memory.samples.shape[1])
+
+    def of_states(self, chosen: Ints) -> Ints:
+        """Score of each edge (edges,) when every row shows its chosen state (rows,)."""
+        here, there = self.edges.T
+        left, right = pairs_of(self._memory, self._states.rows[here])
+        low, high = self._states.span(here, chosen[here])
+        from_here = (left >= low) & (left < high)
+        low, high = self._states.span(there, chosen[there])
+        to_there = (right >= low) & (right < high)
+        count, row, column = (_count(mask) for mask in (from_here & to_there, from_here, to_there))
+        pairs = self._memory.n_pairs.reshape(-1)[self._states.rows[here]]
+        return _forbidden(count, row * column / np.maximum(1, pairs))
+
+    def tables(self, edges: Ints) -> Ints:
+        """Scores (k, states, states) of these edges, for every two states."""
+        count = pair_counts(self._memory, self._states, self.edges[edges])
+        row, column = count.sum(axis=2, keepdims=True), count.sum(axis=1, keepdims=True)
+        return _forbidden(count, row * column / np.maximum(1, count.sum(axis=(1, 2), keepdims=True)))
+
+
+def _forbidden(count: Ints, expected: Floats) -> Ints:
+    """Score, never above 0, of a pair that was seen so often, and would be so often by chance."""
     ratio = (count + PAIR_PRIOR) / (expected + PAIR_PRIOR)
-    return Scores(unary, edges, _whole(-FORBIDDEN * np.maximum(0, 1 - 2 * ratio)))
+    return _whole(-FORBIDDEN * np.maximum(0, 1 - 2 * ratio))
 
 
 def neighbouring_rows(rows: Ints, angle_bins: int) -> Ints:
@@ -80,15 +95,23 @@ def neighbouring_rows(rows: Ints, angle_bins: int) -> Ints:
     return np.stack((found, place[found]), axis=1)
 
 
+def pairs_of(memory: Remembered, rows: Ints) -> tuple[Ranges, Ranges]:
+    """Pairs (k, window) of these angle bins: the range there, and in the next."""
+    return memory.left.reshape(-1, memory.window)[rows], memory.right.reshape(-1, memory.window)[rows]
+
+
 def pair_counts(memory: Remembered, states: States, edges: Ints) -> Ints:
     """How often each two states of neighbouring rows were remembered side by side (edges, states, states)."""
-    size = states.starts.shape[1]
-    flat = states.rows[edges[:, 0]]
-    left = memory.left.reshape(-1, memory.window)[flat]
-    right = memory.right.reshape(-1, memory.window)[flat]
-    label = states.labels(left, edges[:, 0]).astype(np.int64) * size
+    left, right = pairs_of(memory, states.rows[edges[:, 0]])
+    label = states.labels(left, edges[:, 0]).astype(np.int64) * states.size
     label += states.labels(right, edges[:, 1])
-    return _sums(label, left < UNSEEN, size * size).reshape(-1, size, size)
+    counts = _sums(label, left < UNSEEN, states.size * states.size)
+    return counts.reshape(-1, states.size, states.size)
+
+
+def _count(mask: Bools) -> Ints:
+    """How many are true in each row (rows,)."""
+    return mask.view(np.uint8).sum(axis=1, dtype=np.uint16).astype(np.int64)
 
 
 def _sums(labels: npt.NDArray[np.integer], weights: npt.NDArray[np.generic], size: int) -> Ints:

@@ -11,7 +11,7 @@ _MCAP_MAGIC = b"\x89MCAP"
 
 
 def read_nodes(path: Path) -> tuple[Node, ...]:
-    """Nodes of an earlier result, or of a text file with lines `x,y` [m, map frame]; a line of names may come first.
+    """Nodes of an earlier result, or of a text file with lines `x, y` or `x y` [m, map frame]; `x, y` may come first.
 
     UsageError where there is no such file or no node in it, TimemapError where it cannot be read.
     """
@@ -25,19 +25,19 @@ def read_nodes(path: Path) -> tuple[Node, ...]:
         with ResultReader(path) as result:
             return tuple(result.nodes)
     lines = [line.strip() for line in data.decode(errors="replace").splitlines()]
-    if lines and lines[0].replace(" ", "").lower() == "x,y":
+    if lines and lines[0].lower().replace(",", " ").split() == ["x", "y"]:
         lines[0] = ""
     nodes = tuple(_node(path, number, line) for number, line in enumerate(lines, 1) if line)
     if not nodes:
-        raise UsageError(f"{path} holds no nodes", hint="one line `x,y` in metres for each node")
+        raise UsageError(f"{path} holds no nodes", hint="one line `x, y` in metres for each node")
     return nodes
 
 
 def _node(path: Path, number: int, line: str) -> Node:
     try:
-        x, y = (round(float(value), 3) for value in line.split(","))
+        x, y = (round(float(value), 3) for value in line.replace(",", " ").split())
     except ValueError:
         x = y = math.nan
     if not (math.isfinite(x) and math.isfinite(y)):
-        raise UsageError(f"{path}, line {number}: '{line[:40]}' is not a place `x,y` in metres")
+        raise UsageError(f"{path}, line {number}: '{line[:40]}' is not a place `x, y` in metres")
     return Node(x, y)

@@ -1,0 +1,75 @@
+"""Which node a scan goes to."""
+
+import numpy as np
+import pytest
+
+from timemap_cli.model.nodes import Node
+from timemap_cli.model.placement import NO_NODE, Placement
+
+
+def assigned(placement, *places):
+    return placement.assign(np.array(places, float).reshape(-1, 2)).tolist()
+
+
+def test_the_first_scan_makes_a_node_where_the_robot_is():
+    placement = Placement(1.0)
+    assert assigned(placement, (3.0, -4.0)) == [0]
+    assert placement.nodes == [Node(3.0, -4.0)]
+
+
+def test_a_node_is_made_beyond_the_spacing_and_not_at_it():
+    placement = Placement(1.0)
+    assert assigned(placement, (0, 0), (1.0, 0), (0, -1.0), (1.001, 0)) == [0, 0, 0, 1]
+    assert placement.nodes == [Node(0, 0), Node(1.001, 0)]
+
+
+def test_a_scan_goes_to_the_nearest_node_alone():
+    placement = Placement(1.0)
+    assigned(placement, (0, 0), (1.5, 0))
+    assert assigned(placement, (0.7, 0), (0.8, 0), (0.75, 0)) == [0, 1, 0]
+
+
+def test_a_node_never_moves():
+    placement = Placement(1.0)
+    assigned(placement, (0, 0))
+    for i in range(50):
+        assigned(placement, (0.5, 0.01 * i))
+    assert placement.nodes == [Node(0, 0)]
+
+
+def test_given_nodes_are_all_there_will_be():
+    placement = Placement(1.0, [Node(0, 0), Node(5, 0)])
+    assert assigned(placement, (0.4, 0), (4.2, 0), (2.5, 0), (90, 90)) == [0, 1, NO_NODE, NO_NODE]
+    assert len(placement.nodes) == 2
+
+
+def test_nodes_stand_on_whole_millimetres():
+    placement = Placement(1.0)
+    assigned(placement, (0.12345678, -7.00049))
+    assert placement.nodes == [Node(0.123, -7.0)]
+
+
+def test_nodes_stand_farther_apart_than_the_spacing_and_every_scan_has_one_near():
+    places = np.random.default_rng(2).uniform(-6, 6, (600, 2))
+    placement = Placement(1.5)
+    nodes = placement.assign(places)
+    centres = placement.centres
+    apart = np.linalg.norm(centres[:, None] - centres, axis=2) + np.eye(len(centres)) * 9
+    assert apart.min() > 1.5 - 0.002
+    assert np.linalg.norm(places - centres[nodes], axis=1).max() <= 1.5
+
+
+@pytest.mark.parametrize("block", [1, 7, 100])
+def test_nodes_do_not_depend_on_blocks(block):
+    places = np.cumsum(np.random.default_rng(3).normal(0, 0.3, (300, 2)), axis=0)
+    whole, pieces = Placement(1.0), Placement(1.0)
+    expected = whole.assign(places).tolist()
+    found = np.concatenate([pieces.assign(places[i : i + block]) for i in range(0, 300, block)]).tolist()
+    assert found == expected
+    assert pieces.nodes == whole.nodes
+
+
+def test_no_scans_make_no_node():
+    placement = Placement(1.0)
+    assert assigned(placement) == []
+    assert placement.centres.shape == (0, 2)

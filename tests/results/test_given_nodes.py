@@ -1,0 +1,30 @@
+"""Nodes that are given beforehand."""
+
+import pytest
+
+from timemap_cli.errors import UsageError
+from timemap_cli.model.nodes import Node
+from timemap_cli.results.given_nodes import read_nodes
+
+
+@pytest.mark.parametrize("text", ["x,y\n1.5,-2\n\n3,4\n", "1.5 -2\n3 4", " X , Y \n 1.5, -2.0\n3.0, 4.0001\n"])
+def test_places_are_read_from_lines(tmp_path, text):
+    path = tmp_path / "nodes.csv"
+    path.write_text(text)
+    assert read_nodes(path) == (Node(1.5, -2.0), Node(3.0, 4.0))
+
+
+@pytest.mark.parametrize("line", ["1", "1,2,3", "a,b", "nan,1", "inf 2"])
+def test_a_line_that_is_no_place_is_named(tmp_path, line):
+    path = tmp_path / "nodes.csv"
+    path.write_text(f"1,2\n{line}\n")
+    with pytest.raises(UsageError, match="line 2: '.*' is not a place"):
+        read_nodes(path)
+
+
+def test_a_missing_or_empty_file_is_an_error(tmp_path):
+    with pytest.raises(UsageError, match="there is no file"):
+        read_nodes(tmp_path / "nodes.csv")
+    (tmp_path / "nodes.csv").write_text("x,y\n")
+    with pytest.raises(UsageError, match="holds no nodes"):
+        read_nodes(tmp_path / "nodes.csv")
