@@ -33,7 +33,7 @@ def test_an_error_is_raised_after_the_items_before_it(processors):
 
 
 def test_items_that_nobody_takes_any_more_are_not_made_for_ever():
-    found = ahead(lambda: count(), processors=2)
+    found = ahead(count, processors=2)
     assert list(islice(found, 3)) == [0, 1, 2]
     found.close()
 

@@ -32,7 +32,11 @@ def test_a_command_of_the_tour_prints_what_the_readme_says(folder, block):
     program, *arguments = shlex.split(command.removeprefix("$ "))
     assert program == "timemap"
     done = subprocess.run(
-        [sys.executable, "-m", "timemap_cli", *arguments], cwd=folder, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "timemap_cli", *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert lines_that_stay(done.stdout) == lines_that_stay(expected)

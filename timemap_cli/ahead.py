@@ -22,7 +22,9 @@ def ahead(make: Callable[[], Iterable[T]], *, processors: int | None = None) -> 
     if (processors or len(_usable_processors())) < 2 or not sys.platform.startswith("linux"):
         yield from make()
         return
-    context = multiprocessing.get_context("fork")  # a copy of this process: open files and all need no pickling
+    context = multiprocessing.get_context(
+        "fork"
+    )  # a copy of this process: open files and all need no pickling
     receiver, sender = context.Pipe(duplex=False)
     worker = context.Process(target=_send_all, args=(make, receiver, sender), daemon=True)
     worker.start()

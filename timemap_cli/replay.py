@@ -163,7 +163,8 @@ class _Run:
         if not len(scans):
             return
         self.time_map.learn(scans)
-        if self.newest_ns is None:  # the result's time begins with the first scan, not with the first estimates
+        is_first = self.newest_ns is None
+        if is_first:  # the result's time begins with the first scan, not with the first estimates
             self._result.write_nodes(self.time_map.nodes, int(scans.stamps_ns[0]))
         self.newest_ns = int(scans.stamps_ns[-1])
 
@@ -267,9 +268,7 @@ def _span_warning(span_ns: int) -> tuple[str, ...]:
     return (f"the result spans {span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93",)
 
 
-def _metadata(
-    settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary
-) -> dict[str, str]:
+def _metadata(settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary) -> dict[str, str]:
     """What the result's metadata record says of where it comes from."""
     inputs = [{"name": r.path.name, "sha256": sha256(r.path)} for r in recordings]
     return {

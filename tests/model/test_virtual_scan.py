@@ -183,6 +183,16 @@ def test_a_missing_return_frees_only_out_to_the_scanners_range():
     assert np.isposinf(virtual(sweeps(ranges, ALL_ROUND, [pose(0, 0)], clear_range=10.1))).all()
 
 
+def test_a_short_free_beam_between_far_hits_leaves_its_angle_bin_open():
+    """Both borders are free beyond the radius; what the beam between them says ends at 8 m."""
+    ranges = np.full(1200, 12.0)
+    ranges[1] = np.inf  # bearing 0.5 degrees
+    bearings = np.radians(0.2 + 0.3 * np.arange(1200))
+    seen = virtual(sweeps([ranges], bearings, [pose(0, 0)], clear_range=8.0))
+    assert np.isnan(seen[0])
+    assert np.isposinf(seen[1:]).all()
+
+
 def test_off_the_centre_the_scanners_range_ends_the_clear_part():
     """From 1 m aside, 10.3 m of free beams reach beyond 10 m only on the robot's side."""
     scan = sweeps([np.full(721, np.inf)], ALL_ROUND, [pose(1.0, 0.0)], clear_range=10.3)

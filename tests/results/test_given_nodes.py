@@ -7,7 +7,9 @@ from timemap_cli.model.nodes import Node
 from timemap_cli.results.given_nodes import read_nodes
 
 
-@pytest.mark.parametrize("text", ["x,y\n1.5,-2\n\n3,4\n", "1.5 -2\n3 4", " X , Y \n 1.5, -2.0\n3.0, 4.0001\n"])
+@pytest.mark.parametrize(
+    "text", ["x,y\n1.5,-2\n\n3,4\n", "1.5 -2\n3 4", " X , Y \n 1.5, -2.0\n3.0, 4.0001\n"]
+)
 def test_places_are_read_from_lines(tmp_path, text):
     path = tmp_path / "nodes.csv"
     path.write_text(text)
@@ -18,7 +20,7 @@ def test_places_are_read_from_lines(tmp_path, text):
 def test_a_line_that_is_no_place_is_named(tmp_path, line):
     path = tmp_path / "nodes.csv"
     path.write_text(f"1,2\n{line}\n")
-    with pytest.raises(UsageError, match="line 2: '.*' is not a place"):
+    with pytest.raises(UsageError, match=r"line 2: '.*' is not a place"):
         read_nodes(path)
 
 

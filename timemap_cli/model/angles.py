@@ -29,7 +29,7 @@ def quarter_turns(x: Floats, y: Floats) -> Floats:
     u *= 2
     u -= 1  # tan of (bearing in its quadrant - 45 degrees)
     square = u * u
-    poly = square * _ATAN[-1]
+    poly: Floats = square * _ATAN[-1]
     for coefficient in _ATAN[-2:0:-1]:
         poly += coefficient
         poly *= square

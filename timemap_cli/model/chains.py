@@ -1,8 +1,9 @@
 """The best states of many circles of angle bins, most of which need no search.
 
-Angle bins with one state do not couple what lies on either side of them, so the rows that have a choice fall into short
-chains. Scores of pairs are never above 0: where each row's best state by itself costs nothing beside its neighbours',
-that is the optimum. Only the chains in conflict are searched, all of them as one circle joined by links that cost nothing.
+Angle bins with one state do not couple what lies on either side of them, so the rows that have a choice fall into
+short chains. Scores of pairs are never above 0: where each row's best state by itself costs nothing beside its
+neighbours', that is the optimum. Only the chains in conflict are searched, all of them as one circle joined by links
+that cost nothing.
 """
 
 from typing import Protocol
@@ -11,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.closed_path import IMPOSSIBLE, best_closed_path
+
 Ints = npt.NDArray[np.int64]
 
 
@@ -31,7 +33,7 @@ def best_states(unary: Ints, coupling: Coupling, rows: Ints, angle_bins: int) ->
 
     `unary` (rows, states) scores each state by itself; `rows` holds node * angle_bins + angle bin, ascending.
     """
-    best = unary.argmax(axis=1)
+    best: Ints = unary.argmax(axis=1)
     here = coupling.edges[:, 0]
     conflict = here[coupling.of_states(best) < 0]
     if not len(conflict):
@@ -49,7 +51,7 @@ def _chains(rows: Ints, link: Ints, conflict: Ints, angle_bins: int) -> list[Int
     open_end = link < 0
     breaks = np.bincount(node[open_end], minlength=int(node[-1]) + 1)
     # An open circle is turned so that it begins after a break: what lies before its first break goes to its end.
-    before_break = np.cumsum(open_end) - open_end
+    before_break: Ints = np.cumsum(open_end) - open_end
     first_row = np.searchsorted(node, node)
     wraps = (before_break == before_break[first_row]) & (breaks[node] > 0)
     wraps &= link[np.searchsorted(node, node, side="right") - 1] >= 0

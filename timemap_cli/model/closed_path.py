@@ -1,8 +1,8 @@
 """The best closed path round the circle of angle bins: exact, for all start states at once.
 
-A path's score is the sum of its states' unary and its neighbours' pairwise scores. The matrices of best scores from one
-angle bin to another multiply associatively (with max for +, + for *), so neighbours are joined two by two: the work is the same as a
-walk round the circle, in log2 as many steps. Scores are integers, so the order of sums decides nothing.
+A path's score is the sum of its states' unary and its neighbours' pairwise scores. The matrices of best scores from
+one angle bin to another multiply associatively (with max for +, + for *), so neighbours are joined two by two: in
+log2 as many steps as a walk round the circle. Scores are integers, so the order of sums decides nothing.
 """
 
 import numpy as np

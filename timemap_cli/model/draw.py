@@ -5,6 +5,7 @@ neighbouring angle bins stay together.
 """
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from timemap_cli.model import chance
 from timemap_cli.model.levels import LONGEST_STEP, Level
 
 Ints = npt.NDArray[np.int64]
+Count = TypeVar("Count", np.int64, np.uint32)
 
 _ONE = 1 << 32  # shares are summed as whole 2^-32, so that a sum does not depend on how scans come in blocks
 _NEVER = np.iinfo(np.int64).min
@@ -41,12 +43,14 @@ class Groups:
         """The nodes, ascending."""
         return self.nodes[self.starts]
 
-    def running_sums(self, values: npt.NDArray[np.generic], totals: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+    def running_sums(
+        self, values: npt.NDArray[np.bool_] | Ints, totals: npt.NDArray[Count]
+    ) -> npt.NDArray[Count]:
         """Sums (n, ...) of each node's values up to and with each scan, on top of its total so far.
 
         `totals` (nodes, ...) is brought up to date.
         """
-        sums = np.cumsum(values, axis=0, dtype=totals.dtype)
+        sums: npt.NDArray[Count] = np.cumsum(values, axis=0, dtype=totals.dtype)
         if not len(sums):
             return sums
         base = totals[self.distinct]
@@ -95,7 +99,8 @@ class Draw:
         """
         reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
         young = np.minimum(1.0, self._level.window / reached)
-        return np.rint(np.maximum(young, self._due(groups, stamps_ns)) * _ONE).astype(np.int64)
+        shares = np.rint(np.maximum(young, self._due(groups, stamps_ns)) * _ONE)
+        return np.asarray(shares, np.int64)
 
     def _due(self, groups: Groups, stamps_ns: Ints) -> npt.NDArray[np.float64] | float:
         if not self._level.in_seconds:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from timemap_cli.model.chains import best_states
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States, states_from_data
-from timemap_cli.model.virtual_scan import UNSEEN, Ranges
+from timemap_cli.model.virtual_scan import Ranges
 from timemap_cli.model.vote import Forbidding, Shares, shares, votes
 
 Ints = npt.NDArray[np.int64]
@@ -62,7 +62,7 @@ def _measured(memory: Remembered, states: States, best: Ints) -> Ranges:
     n_samples = memory.n_samples.reshape(-1)
     begin, end = np.zeros_like(n_samples), n_samples.copy()
     begin[states.rows], end[states.rows] = _between(samples[states.rows], low, high)
-    median = samples[np.arange(len(samples)), np.maximum(begin + end - 1, 0) // 2]
+    median: Ranges = samples[np.arange(len(samples)), np.maximum(begin + end - 1, 0) // 2]
     lost = np.flatnonzero(begin[states.rows] == end[states.rows])
     begin, end = _between(states.known[states.rows[lost]], low[lost], high[lost])
     median[states.rows[lost]] = states.known[states.rows[lost], (begin + end - 1) // 2]

@@ -42,7 +42,9 @@ def passing(
     passes = np.ones(len(nodes), np.bool_)
     if not (gate.min_travel or gate.min_turn or gate.min_interval_ns):
         return passes
-    for i, (node, (x, y, yaw), stamp) in enumerate(zip(nodes, places.tolist(), stamps_ns.tolist(), strict=True)):
+    for i, (node, (x, y, yaw), stamp) in enumerate(
+        zip(nodes, places.tolist(), stamps_ns.tolist(), strict=True)
+    ):
         before = last.get(node)
         if before is None or _far_enough(gate, before, x, y, yaw, stamp):
             last[node] = Passage(x, y, yaw, stamp)

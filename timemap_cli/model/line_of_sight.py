@@ -20,7 +20,7 @@ FAR = 65535  # [mm] as far as the table reaches
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """The outlines of n scans seen from their nodes along the borders of the angle bins; border i is where bin i begins."""
+    """The outlines of n scans seen from their nodes, along the borders of the angle bins; bin i begins at border i."""
 
     bearing: Floats  # (n, vertices + 1) in angle bins, [0, angle_bins)
     free: npt.NDArray[np.uint16]  # (n, angle_bins) [mm] along each border to the first edge of the outline

@@ -1,7 +1,7 @@
 """One level's memory of all nodes: bounded random samples of ranges, and of which ranges stood side by side.
 
-Reading of the paper (sec. 3 and 4): samples and pairs are two bounded sets per angle bin. A new sample replaces a random
-sample, a new pair a random pair, once a set is full, and nothing else evicts.
+Reading of the paper (sec. 3 and 4): samples and pairs are two bounded sets per angle bin. Once a set is full, a new
+sample replaces a random sample, a new pair a random pair, and nothing else evicts.
 """
 
 from collections.abc import Sequence

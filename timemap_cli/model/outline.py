@@ -59,8 +59,7 @@ def _chord_correction(first: Poses, last: Poses, progress: Floats) -> Floats:
     """
     difference = last[:, :, :3] - first[:, :, :3]
     half_square = (difference * difference).sum(axis=(1, 2)) / 4  # theta^2 / 2
-    bend = progress - progress * progress
-    bend = bend * half_square.astype(np.float32)[:, None]
+    bend: Floats = (progress - progress * progress) * half_square.astype(np.float32)[:, None]
     bend += 1
     return bend
 
@@ -70,8 +69,8 @@ def _place(
 ) -> Floats:
     """One coordinate (n, rays + 1) [m] of the ends of all rays; the last column is left for the closing vertex.
 
-    `pose` and `change` (n, 4) are that coordinate's rows of map_from_laser at the first beam, and of what it changes by until
-    the last; `origin` (n,) is the laser's coordinate relative to the node.
+    `pose` (n, 4) is that coordinate's row of map_from_laser at the first beam, `change` (n, 4) what it changes by
+    until the last; `origin` (n,) is the laser's coordinate relative to the node.
     """
     out = np.empty((len(length), length.shape[1] + 1), np.float32)
     end = out[:, :-1]

@@ -57,11 +57,14 @@ class _EdgeWeights:
         count = pair_counts(memory, states, self.edges).astype(np.float64)
         of_state, of_bin = count.sum(axis=2, keepdims=True), count.sum(axis=(1, 2), keepdims=True)
         following = own[self.edges[:, 1], None, :]
-        self._tables = _log(np.where(of_state > 0, count / np.maximum(of_bin, 1), following), strict=strict)
+        self._tables: npt.NDArray[np.int64] = _log(
+            np.where(of_state > 0, count / np.maximum(of_bin, 1), following), strict=strict
+        )
 
     def of_states(self, chosen: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         here, there = self.edges.T
-        return self._tables[np.arange(len(here)), chosen[here], chosen[there]]
+        scores: npt.NDArray[np.int64] = self._tables[np.arange(len(here)), chosen[here], chosen[there]]
+        return scores
 
     def tables(self, edges: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         return self._tables[edges]

@@ -31,14 +31,14 @@ class States:
     """
 
     rows: Ints  # (rows,) node * angle_bins + angle bin, ascending
-    borders: Ranges  # (rows, states + 1) [mm] ascending, the first 0; UNSEEN from the end of the row's last state
+    borders: Ranges  # (rows, states + 1) [mm] ascending, the first 0; UNSEEN from the last one on
     known: Ranges  # (m * angle_bins, 3 * window) [mm] all ranges known in any angle bin, ascending
     n_known: Ints  # (m * angle_bins,) how many
 
     @property
     def size(self) -> int:
         """The most states that any row has."""
-        return self.borders.shape[1] - 1
+        return int(self.borders.shape[1]) - 1
 
     @property
     def exists(self) -> Bools:
@@ -89,7 +89,8 @@ def states_from_data(memory: Remembered, width: float) -> States:
 def _may_split(known: Ranges, n_known: Ints, size: int) -> Ints:
     """Angle bins that may hold more than one surface; most do not, and this tells it without the stretched scale.
 
-    That scale grows ever slower with range: two ranges are at most as far apart on it as the slope at the nearest makes them.
+    That scale grows ever slower with range, so two ranges are no farther apart on it than its slope at the nearest
+    range makes them.
     """
     last = np.maximum(n_known, 1) - 1
     nearest, farthest = known[:, 0], known[np.arange(len(known)), last]
@@ -133,7 +134,9 @@ def _cut_wide_groups(cut: Bools, place: Stretched, count: Ints, size: int) -> No
         before, after = begin > start, end < stop
         cut[row[before], begin[before] - 1] = True
         cut[row[after], end[after] - 1] = True
-        rests = np.concatenate((np.stack((row, start, begin), 1)[before], np.stack((row, end, stop), 1)[after]))
+        rests = np.concatenate(
+            (np.stack((row, start, begin), 1)[before], np.stack((row, end, stop), 1)[after])
+        )
         wide = rests[place[rests[:, 0], rests[:, 2] - 1] - place[rests[:, 0], rests[:, 1]] > size]
 
 
@@ -149,7 +152,7 @@ def _groups_wider_than(limit: int, cut: Bools, place: Stretched, count: Ints) ->
     final = np.append(row[1:] != row[:-1], True)[: len(row)]
     stop = np.where(final, count[row], stop[: len(row)])
     wide = place[row, stop - 1] - place[row, start] > limit
-    return np.stack((row, start, stop), 1)[wide]
+    return np.stack((row[wide], start[wide], stop[wide]), 1)
 
 
 def _densest_windows(place: Stretched, groups: Ints, size: int) -> tuple[Ints, Ints]:

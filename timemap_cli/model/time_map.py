@@ -45,7 +45,9 @@ class TimeMap:
         for level, (memory, changed) in enumerate(zip(self._memories, self._changed, strict=True)):
             memory.add_nodes(self.nodes)
             rows = seen.passes if level else slice(None)
-            changed.update(memory.remember(seen.nodes[rows], seen.stamps_ns[rows], seen.ranges[rows]).tolist())
+            changed.update(
+                memory.remember(seen.nodes[rows], seen.stamps_ns[rows], seen.ranges[rows]).tolist()
+            )
 
     def estimates(self) -> list[Estimate]:
         """Estimates of the nodes that changed since the last call, level by level and in order of node."""

@@ -59,17 +59,16 @@ def _from_nodes(
 
 def _distances(outline: Outlines) -> npt.NDArray[np.float32]:
     """Distance of every vertex from the node [mm, whole, at most FAR] (n, vertices + 1)."""
-    distance = outline.x * outline.x
+    distance: npt.NDArray[np.float32] = outline.x * outline.x
     distance += outline.y * outline.y
     np.sqrt(distance, out=distance)
     distance *= MILLIMETRES
     np.rint(distance, out=distance)
-    return np.minimum(distance, np.float32(FAR), out=distance)
+    np.minimum(distance, np.float32(FAR), out=distance)
+    return distance
 
 
-def _nearest_hits(
-    outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int
-) -> Ranges:
+def _nearest_hits(outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int) -> Ranges:
     """The nearest hit in each angle bin (n, angle_bins) that nothing hides from the node.
 
     Where none is, _BLOCKED if the outline has another vertex there within reach, else UNSEEN.
@@ -115,7 +114,12 @@ def _clear(outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], r
 
 
 def _close_holes(
-    ranges: Ranges, empty: Bools, outline: Outlines, sight: Sight, distance: npt.NDArray[np.float32], reach: int
+    ranges: Ranges,
+    empty: Bools,
+    outline: Outlines,
+    sight: Sight,
+    distance: npt.NDArray[np.float32],
+    reach: int,
 ) -> None:
     """Give an angle bin between two near hits of one surface the range of the nearer, in place."""
     same = sight.edge == np.roll(sight.edge, -1, axis=1)

@@ -111,7 +111,7 @@ def pair_counts(memory: Remembered, states: States, edges: Ints) -> Ints:
 
 def _count(mask: Bools) -> Ints:
     """How many are true in each row (rows,)."""
-    return mask.view(np.uint8).sum(axis=1, dtype=np.uint16).astype(np.int64)
+    return np.asarray(mask.view(np.uint8).sum(axis=1, dtype=np.uint16), np.int64)
 
 
 def _sums(labels: npt.NDArray[np.integer], weights: npt.NDArray[np.generic], size: int) -> Ints:
