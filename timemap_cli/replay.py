@@ -1,7 +1,6 @@
 """From recordings to a result: the one place where logs, model and results meet."""
 
 import json
-import math
 import time
 from collections import Counter
 from collections.abc import Generator, Iterable, Mapping, Sequence
@@ -12,20 +11,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
+from timemap_cli import assembly
 from timemap_cli.ahead import ahead
-from timemap_cli.config import LevelSettings, Settings, dump, settings_hash
+from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.estimates import Estimate
-from timemap_cli.model.estimator import Estimator, estimate
-from timemap_cli.model.gate import Gate
-from timemap_cli.model.levels import Level
-from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer
-from timemap_cli.model.paper_profile import estimate_as_in_paper
-from timemap_cli.model.schedule import Period, Schedule
+from timemap_cli.model.schedule import Schedule
 from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.model.time_map import TimeMap
 from timemap_cli.results.given_nodes import read_nodes
@@ -79,11 +74,11 @@ def replay(
         plan = survey(recordings, settings)
         given = read_nodes(nodes) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        run = _Run(_time_map(settings, given), result, _schedule(settings))
+        run = _Run(assembly.time_map(settings, given), result, assembly.schedule(settings))
         start_ns, end_ns = _span_ns(recordings, start, end)
         counts = ScanCounts()
         blocks = sweeps(recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns)
-        observed = partial(_observed, blocks, _observer(settings, given), counts, recordings)
+        observed = partial(_observed, blocks, assembly.observer(settings, given), counts, recordings)
         for step in stack.enter_context(closing(ahead(observed))):
             run.take(step)
             if progress is not None:
@@ -176,44 +171,6 @@ class _Run:
         self._result.write_estimates(estimates, self.newest_ns)
         for found in estimates:
             self._latest[found.level][found.node] = found
-
-
-def _observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
-    gate = settings.gate
-    return Observer(
-        Gate(gate.min_travel, math.radians(gate.min_turn_deg), round(gate.min_interval_s * 1e9)),
-        angle_bins=settings.map.angle_bins,
-        radius=settings.map.radius,
-        spacing=settings.map.node_spacing,
-        nodes=nodes,
-    )
-
-
-def _time_map(settings: Settings, nodes: Sequence[Node]) -> TimeMap:
-    return TimeMap(
-        [_level(level) for level in settings.levels],
-        _estimator(settings),
-        angle_bins=settings.map.angle_bins,
-        seed=settings.seed,
-        nodes=nodes,
-    )
-
-
-def _level(level: LevelSettings) -> Level:
-    return Level(level.name, level.window, level.half_life.value, in_seconds=level.half_life.unit == "s")
-
-
-def _estimator(settings: Settings) -> Estimator:
-    if settings.profile == "paper":
-        return partial(estimate_as_in_paper, range_bin=settings.map.range_bin)
-    return partial(estimate, state_width=settings.map.range_bin)
-
-
-def _schedule(settings: Settings) -> Schedule:
-    every = settings.estimate.every
-    if every.unit == "obs":
-        return Schedule(Period(max(1, round(every.value)), in_scans=True))
-    return Schedule(Period(round(every.value * 1e9), in_scans=False))
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:

@@ -7,6 +7,7 @@ import pytest
 
 from tests.model.memories import learnt, recalled
 from tests.model.reference import stretched
+from timemap_cli.model.paper_profile import states_from_range_bins
 from timemap_cli.model.states import MAX_STATES, states_from_data
 from timemap_cli.model.virtual_scan import UNSEEN
 
@@ -102,3 +103,10 @@ def test_random_ranges_of_any_density_are_all_in_exactly_one_surface():
             np.rint(ranges * 1000).astype(int).tolist()
         )
         assert all(found)
+
+
+def test_hundreds_of_slices_of_range_keep_their_numbers():
+    ranges = np.round(0.3 + 0.02 * np.arange(400), 3)
+    memory = recalled(learnt(np.repeat(ranges[:, None], 3, axis=1), 400))
+    states = states_from_range_bins(memory, 0.01)
+    assert states.labels(np.sort(memory.samples[0]), np.arange(3)).tolist() == [list(range(400))] * 3

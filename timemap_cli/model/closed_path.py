@@ -21,7 +21,7 @@ def best_closed_path(unary: Ints, pairwise: Ints) -> tuple[Ints, int]:
     the lower state. Returns the states and the score.
     """
     matrices = unary[:, :, None] + pairwise
-    middles: list[npt.NDArray[np.int64]] = []
+    middles: list[npt.NDArray[np.uint16]] = []
     while len(matrices) > 1:
         pairs = len(matrices) // 2
         joined, middle = _join(matrices[0 : 2 * pairs : 2], matrices[1 : 2 * pairs : 2])
@@ -32,14 +32,18 @@ def best_closed_path(unary: Ints, pairwise: Ints) -> tuple[Ints, int]:
     return _unfold(best, middles), int(around[best])
 
 
-def _join(first: Ints, second: Ints) -> tuple[Ints, Ints]:
+def _join(first: Ints, second: Ints) -> tuple[Ints, npt.NDArray[np.uint16]]:
     """Best scores (k, states, states) over two stretches in a row, and the state in the middle that gives them."""
-    total = first[:, :, :, None] + second[:, None, :, :]
-    middle = total.argmax(axis=2)
-    return np.take_along_axis(total, middle[:, :, None, :], axis=2)[:, :, 0, :], middle
+    best = first[:, :, 0, None] + second[:, 0, None, :]
+    middle = np.zeros(best.shape, np.uint16)
+    for state in range(1, first.shape[2]):  # all at once would need states^3 numbers each
+        total = first[:, :, state, None] + second[:, state, None, :]
+        middle[total > best] = state
+        np.maximum(best, total, out=best)
+    return best, middle
 
 
-def _unfold(best: int, middles: list[Ints]) -> Ints:
+def _unfold(best: int, middles: list[npt.NDArray[np.uint16]]) -> Ints:
     """Starting states of all stretches, from the whole circle's down to the single angle bins'."""
     path = np.array([best])
     for middle in reversed(middles):

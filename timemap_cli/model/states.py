@@ -49,10 +49,12 @@ class States:
         """Where one state of each of these rows begins and ends (k, 1) [mm], the end excluded."""
         return self.borders[rows, state, None], self.borders[rows, state + 1, None]
 
-    def labels(self, values: Ranges, rows: Ints) -> npt.NDArray[np.uint8]:
+    def labels(self, values: Ranges, rows: Ints) -> npt.NDArray[np.unsignedinteger]:
         """Number of the state of each value (k, n) of these rows; what UNSEEN gets means nothing."""
         borders = self.borders[rows]
-        label = (values >= borders[:, 1:2]).astype(np.uint8)
+        label: npt.NDArray[np.unsignedinteger] = (values >= borders[:, 1:2]).astype(
+            np.min_scalar_type(self.size)
+        )
         for state in range(2, self.size):
             more = np.flatnonzero(borders[:, state] < UNSEEN)  # ever fewer
             label[more] += values[more] >= borders[more, state, None]
