@@ -82,9 +82,10 @@ def replay(
         for step in stack.enter_context(closing(ahead(observed))):
             run.take(step)
             if progress is not None:
-                progress(_share_done(recordings, run.newest_ns), run.counts.read)
+                progress(_share_done(recordings, run.newest_ns), run.read.counts.read)
         summary = _summary(output, settings, plan, run, time.perf_counter() - began)
-        result.finish(_metadata(settings, recordings, summary), dump(settings), _report(plan, summary))
+        metadata = _metadata(settings, recordings, run.read.digests, summary)
+        result.finish(metadata, dump(settings), _report(plan, summary))
     return summary
 
 
@@ -95,6 +96,7 @@ class _Step:
     seen: Observations | None  # None: a recording has ended
     counts: ScanCounts
     damage: tuple[str, ...]  # what is wrong with the recordings, as far as read
+    digests: tuple[str, ...] = ()  # SHA-256 of each recording; with the last step
 
 
 def _observed(
@@ -106,7 +108,8 @@ def _observed(
     for block in blocks:
         seen = None if isinstance(block, EndOfRecording) else observer.observe(block)
         yield _Step(seen, deepcopy(counts), _damage(recordings))
-    yield _Step(None, counts, _damage(recordings))  # what was dropped after the last block
+    digests = tuple(sha256(recording.path) for recording in recordings)
+    yield _Step(None, counts, _damage(recordings), digests)  # with what was dropped after the last block
 
 
 def _damage(recordings: Sequence[Recording]) -> tuple[str, ...]:
@@ -120,7 +123,7 @@ class _Run:
         self.time_map = time_map
         self.used = 0
         self.dropped: Counter[str] = Counter()
-        self.counts, self.damage = ScanCounts(), ()  # type: tuple[ScanCounts, tuple[str, ...]]
+        self.read = _Step(None, ScanCounts(), ())
         self.newest_ns: int | None = None  # stamp of the newest scan learnt
         self._maps_ns: int | None = None  # stamp of the newest maps written
         self._result = result
@@ -128,7 +131,7 @@ class _Run:
         self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in time_map.levels}
 
     def take(self, step: _Step) -> None:
-        self.counts, self.damage = step.counts, step.damage
+        self.read = step
         if step.seen is None:
             self._end_recording()
         else:
@@ -203,19 +206,19 @@ def _share_done(recordings: Sequence[Recording], now_ns: int | None) -> float:
 
 
 def _summary(output: Path, settings: Settings, plan: Survey, run: _Run, seconds: float) -> ReplaySummary:
-    dropped = Counter(run.counts.dropped) + run.dropped
+    dropped = Counter(run.read.counts.dropped) + run.dropped
     lost = sum(count for reason, count in dropped.items() if reason not in _NOT_LOST)
-    wanted = run.counts.read - sum(dropped[reason] for reason in _NOT_LOST)
+    wanted = run.read.counts.read - sum(dropped[reason] for reason in _NOT_LOST)
     return ReplaySummary(
         result=output,
         nodes=len(run.time_map.nodes),
         levels=run.time_map.levels,
-        scans_read=run.counts.read,
+        scans_read=run.read.counts.read,
         scans_used=run.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*plan.selection.warnings, *plan.problems, *run.damage, *_span_warning(run.span_ns)),
-        data_lost=bool(run.damage) or lost > settings.input.max_dropped * wanted,
+        warnings=(*plan.selection.warnings, *plan.problems, *run.read.damage, *_span_warning(run.span_ns)),
+        data_lost=bool(run.read.damage) or lost > settings.input.max_dropped * wanted,
     )
 
 
@@ -225,9 +228,11 @@ def _span_warning(span_ns: int) -> tuple[str, ...]:
     return (f"the result spans {span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93",)
 
 
-def _metadata(settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary) -> dict[str, str]:
+def _metadata(
+    settings: Settings, recordings: Sequence[Recording], digests: Sequence[str], summary: ReplaySummary
+) -> dict[str, str]:
     """What the result's metadata record says of where it comes from."""
-    inputs = [{"name": r.path.name, "sha256": sha256(r.path)} for r in recordings]
+    inputs = [{"name": r.path.name, "sha256": digest} for r, digest in zip(recordings, digests, strict=True)]
     return {
         "inputs": json.dumps(inputs),
         "settings_sha256": settings_hash(settings),

@@ -8,7 +8,6 @@ from tests.model.drives import GATE, OPEN_GATE, drive, observer
 from tests.model.scenes import ROOM, fan, look_around, pose, sweeps
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.sweeps import Sweeps
-from timemap_cli.model.virtual_scan import UNSEEN
 
 ROUND = fan(361, 360)
 
@@ -56,10 +55,11 @@ def test_a_node_that_cannot_be_judged_is_not_passed_by_the_gate():
     assert found.passes.tolist() == [True, False]
 
 
-def test_a_scan_without_evidence_is_used_and_says_nothing():
+def test_a_scan_without_evidence_judges_nothing():
+    """Else it would age the memory of its node."""
     found = observer().observe(sweeps([np.full(361, np.nan)], ROUND, [pose(0, 0)]))
-    assert len(found) == 1
-    assert (found.ranges == UNSEEN).all()
+    assert len(found) == 0
+    assert found.node_not_seen == 1
 
 
 def test_observations_can_be_taken_in_parts():

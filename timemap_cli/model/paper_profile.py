@@ -28,9 +28,11 @@ def estimate_as_in_paper(memory: Remembered, range_bin: float) -> Estimated:
     weights = _EdgeWeights(memory, states, own, strict=True)
     prior = _prior(states, own, angle_bins)
     best = best_states(prior, weights, states.rows, angle_bins)
-    if (weights.of_states(best) == IMPOSSIBLE).any():
-        weights = _EdgeWeights(memory, states, own, strict=False)
-        best = best_states(prior, weights, states.rows, angle_bins)
+    here = weights.edges[weights.of_states(best) == IMPOSSIBLE, 0]
+    if len(here):
+        loose = best_states(prior, _EdgeWeights(memory, states, own, strict=False), states.rows, angle_bins)
+        node = states.rows // angle_bins
+        best = np.where(np.isin(node, node[here]), loose, best)  # only where no closed path does without
     return assembled(memory, states, share, best)
 
 
