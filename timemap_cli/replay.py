@@ -217,15 +217,16 @@ def _summary(output: Path, settings: Settings, plan: Survey, run: _Run, seconds:
         scans_used=run.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*plan.selection.warnings, *plan.problems, *run.read.damage, *_span_warning(run.span_ns)),
+        warnings=(*plan.selection.warnings, *plan.problems, *run.read.damage, *_other_warnings(run)),
         data_lost=bool(run.read.damage) or lost > settings.input.max_dropped * wanted,
     )
 
 
-def _span_warning(span_ns: int) -> tuple[str, ...]:
-    if span_ns <= VIEWERS_SPAN_NS:
-        return ()
-    return (f"the result spans {span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93",)
+def _other_warnings(run: _Run) -> Generator[str, None, None]:
+    if unusable := run.read.counts.transforms_dropped:
+        yield f"{unusable} transforms or poses could not be used"
+    if run.span_ns > VIEWERS_SPAN_NS:
+        yield f"the result spans {run.span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93"
 
 
 def _metadata(

@@ -64,6 +64,17 @@ def test_a_plain_recording_needs_no_option(tmp_path):
     assert (found.no_return, found.contradicted, found.problems) == ("clear", None, ())
 
 
+def test_a_scanner_that_sees_less_far_than_a_node_is_told(tmp_path):
+    log = wall_log(tmp_path / "a.mcap")
+    recordings = open_recordings([log])
+    found = survey(recordings, load(None, {"map": {"radius": 35.0}}))
+    assert found.problems == (
+        "/scan reaches 30 m and nodes look 35 m: little or nothing is seen clear; "
+        "set map.radius to 29 (see timemap config)",
+    )
+    recordings[0].close()
+
+
 def test_missing_returns_through_walls_are_ignored(tmp_path):
     found = surveyed(wall_log(tmp_path / "a.mcap", holes=slice(40, 80)))
     assert found.no_return == "ignore"

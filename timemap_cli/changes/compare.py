@@ -31,8 +31,8 @@ def compare(
 
     With `only_renewed` (two times of one level) a node with the same stamp on both sides was not seen in
     between and says nothing: it reports no change, and has no vote on its neighbours' reports. Do not set it
-    for two levels of one time, which always carry the same stamp. Raises ValueError where rings differ in
-    their number of angle bins.
+    for two levels of one time: they may well have learnt from the same scan last. Raises ValueError where
+    rings differ in their number of angle bins.
     """
     numbers = comparable(old, new, only_renewed)
     silent = tuple(sorted((old.keys() | new.keys()) - set(numbers)))

@@ -72,7 +72,8 @@ def survey_sample(
             missing[topic] = _examined(sample, topic, beams, poses, selection, settings.map.radius)
         if not _are_clear(missing.get(topic), settings.input):
             beams |= {key: b.ignoring_missing() for key, b in beams.items() if key[1] == topic}
-    return Survey(selection, beams, missing, _problems(recordings, sample, poses, selection))
+    problems = _problems(recordings, sample, poses, selection) + _short_sighted(beams, settings)
+    return Survey(selection, beams, missing, problems)
 
 
 def topics_of(recordings: Sequence[Recording]) -> dict[str, str]:
@@ -192,3 +193,14 @@ def _problems(
             if topic not in posed
         ]
     return tuple(found)
+
+
+def _short_sighted(beams: Mapping[tuple[int, str], Beams], settings: Settings) -> tuple[str, ...]:
+    """A sentence for every scanner that cannot see as far from the robot as a node looks from its place."""
+    wanted = settings.map.radius + settings.map.node_spacing / 2
+    reach = {topic: one.clear_range for (_, topic), one in beams.items() if one.clear_range < wanted}
+    return tuple(
+        f"{topic} reaches {metres:g} m and nodes look {settings.map.radius:g} m: little or nothing is seen clear; "
+        f"set map.radius to {max(0.5, metres - settings.map.node_spacing):g} (see timemap config)"
+        for topic, metres in reach.items()
+    )

@@ -24,7 +24,7 @@ class Observations:
     stamps_ns: Ints  # (n,)
     ranges: Ranges  # (n, angle_bins) virtual scans [mm]
     passes: Bools  # (n,) slower levels may take it
-    node_not_seen: int  # scans from which the node's centre cannot be judged
+    node_not_seen: int  # scans that say nothing of their node: it is hidden, or no beam is evidence
     no_node: int  # scans that no given node is near
     all_nodes: Sequence[Node]  # the observer's list, which only ever grows
 

@@ -52,6 +52,8 @@ class States:
     def labels(self, values: Ranges, rows: Ints) -> npt.NDArray[np.unsignedinteger]:
         """Number of the state of each value (k, n) of these rows; what UNSEEN gets means nothing."""
         borders = self.borders[rows]
+        if self.size == 1:
+            return np.zeros(values.shape, np.uint8)
         label: npt.NDArray[np.unsignedinteger] = (values >= borders[:, 1:2]).astype(
             np.min_scalar_type(self.size)
         )

@@ -29,7 +29,7 @@ def virtual_scans(
     """What n scans would have been from n node centres (n, 2) [m, map frame].
 
     Returns ranges (n, angle_bins) [mm], measured ones or CLEAR or UNSEEN, and whether the scan can judge its node at
-    all (n,): the node's centre must lie in what the scan saw free, and something must have been seen.
+    all (n,): the node's centre must lie in what the scan saw free, and some beam must be evidence.
     """
     ranges = np.empty((len(sweeps), angle_bins), np.uint16)
     judged = np.empty(len(sweeps), np.bool_)
@@ -54,7 +54,7 @@ def _from_nodes(
     _close_holes(ranges, empty, outline, sight, distance, reach)
     ranges[ranges == _BLOCKED] = UNSEEN
     ranges[~sight.encloses] = UNSEEN
-    return ranges, (ranges != UNSEEN).any(axis=1)
+    return ranges, sight.encloses & ~outline.disc.all(axis=1)
 
 
 def _distances(outline: Outlines) -> npt.NDArray[np.float32]:

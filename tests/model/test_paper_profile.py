@@ -1,0 +1,70 @@
+"""The paper's own estimate."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+
+from timemap_cli.model.levels import Level
+from timemap_cli.model.memory import Memory, Remembered
+from timemap_cli.model.nodes import Node
+from timemap_cli.model.paper_profile import estimate_as_in_paper
+from timemap_cli.model.virtual_scan import UNSEEN
+
+ANGLE_BINS = 24
+
+
+def remembered(scans):
+    """Memory of one node after these scans (n, angle_bins) [mm]."""
+    memory = Memory(Level("long", 20, 20), ANGLE_BINS, seed=0)
+    memory.add_nodes([Node(0.0, 0.0)])
+    memory.remember(np.zeros(len(scans), np.int64), np.arange(len(scans)), np.array(scans, np.uint16))
+    return memory.recall(np.array([0]))
+
+
+def ring(value):
+    return np.full(ANGLE_BINS, value)
+
+
+def both(one, other):
+    joined = {
+        field.name: np.concatenate([getattr(one, field.name), getattr(other, field.name)])
+        for field in fields(Remembered)
+        if field.name != "window"
+    }
+    return replace(one, **joined)
+
+
+def test_a_coherent_majority_is_estimated():
+    found = estimate_as_in_paper(remembered([ring(1000)] * 3 + [ring(1300)] * 9), 0.075)
+    assert (found.ranges == 1300).all()
+    assert np.allclose(found.support, 0.75)
+
+
+def test_ranges_of_one_slice_are_one_state():
+    found = estimate_as_in_paper(
+        remembered([ring(1051), ring(1070), ring(1100)]), 0.075
+    )  # slice 1050 .. 1125
+    assert (found.ranges == 1070).all()
+    assert np.allclose(found.support, 1)
+
+
+def test_what_was_never_seen_is_unknown():
+    scan = ring(1000)
+    scan[5:9] = UNSEEN
+    found = estimate_as_in_paper(remembered([scan] * 4), 0.075)
+    assert np.flatnonzero(found.ranges[0] == UNSEEN).tolist() == [5, 6, 7, 8]
+
+
+def test_a_circle_that_closes_only_after_two_laps_is_estimated_and_harms_no_other_node():
+    twisted = remembered([ring(1000), ring(3000)])
+    left, right = twisted.left.copy(), twisted.right.copy()
+    right[0, -1, :2] = right[0, -1, 1::-1]  # past the last angle bin, near goes on as far and far as near
+    twisted = replace(twisted, left=left, right=right)
+    rare = ring(1300)
+    plain = remembered([ring(1000)] * 9 + [rare])
+    alone = [estimate_as_in_paper(memory, 0.075) for memory in (twisted, plain)]
+    together = estimate_as_in_paper(both(twisted, plain), 0.075)
+    assert set(np.unique(alone[0].ranges)) <= {1000, 3000}
+    for node in (0, 1):
+        assert np.array_equal(together.ranges[node], alone[node].ranges[0])
+        assert np.array_equal(together.support[node], alone[node].support[0])
