@@ -41,7 +41,7 @@ def test_the_defaults_are_those_that_served_best_on_real_recordings():
         ("mid", 25, "20obs"),
         ("long", 100, "200obs"),
     ]
-    assert settings.gate == GateSettings(min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.2)
+    assert settings.gate == GateSettings(min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.15)
     assert settings.estimate.every == Span(30.0, "s")
     assert settings.input == InputSettings((), "map", "auto", "auto", 0.05)
     assert (settings.seed, settings.profile) == (0, "default")

@@ -196,9 +196,10 @@ def _problems(
 
 
 def _short_sighted(beams: Mapping[tuple[int, str], Beams], settings: Settings) -> tuple[str, ...]:
-    """A sentence for every scanner that cannot see as far from the robot as a node looks from its place."""
+    """A sentence for every scanner whose missing returns free less than a node looks at from its place."""
     wanted = settings.map.radius + settings.map.node_spacing / 2
-    reach = {topic: one.clear_range for (_, topic), one in beams.items() if one.clear_range < wanted}
+    clear = {topic: one for (_, topic), one in beams.items() if one.missing_is_clear}
+    reach = {topic: one.clear_range for topic, one in clear.items() if one.clear_range < wanted}
     return tuple(
         f"{topic} reaches {metres:g} m and nodes look {settings.map.radius:g} m: little or nothing is seen clear; "
         f"set map.radius to {max(0.5, metres - settings.map.node_spacing):g} (see timemap config)"
