@@ -2,8 +2,7 @@
 
 Angle bins with one state do not couple what lies on either side of them, so the rows that have a choice fall into
 short chains. Scores of pairs are never above 0: where each row's best state by itself costs nothing beside its
-neighbours', that is the optimum. Only the chains in conflict are searched, all of them as one circle joined by links
-that cost nothing.
+neighbours', that is the optimum. Only the chains in conflict are searched, all of them at once.
 """
 
 from typing import Protocol
@@ -11,7 +10,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from timemap_cli.model.closed_path import IMPOSSIBLE, best_closed_path
+from timemap_cli.model.closed_path import IMPOSSIBLE, best_closed_path, best_open_paths
 
 Ints = npt.NDArray[np.int64]
 
@@ -70,28 +69,33 @@ def _search(unary: Ints, coupling: Coupling, chain: Ints, link: Ints) -> Ints:
     """Best states (n,) of rows in order, each linked by an edge (n,) to the next, or not at all."""
     exists = unary[chain] > IMPOSSIBLE
     size = int(exists.sum(axis=1).max())
-    place, length = _aligned(link < 0)
-    of_rows = np.full((length, size), IMPOSSIBLE)
+    place, length, count = _aligned(link < 0)
+    of_rows = np.full((length * count, size), IMPOSSIBLE)
     of_rows[:, 0] = 0
     of_rows[place] = unary[chain, :size]
     linked = np.flatnonzero(link >= 0)
-    pairwise = np.zeros((length, size, size), np.int64)
+    pairwise = np.zeros((length * count, size, size), np.int64)
     pairwise[place[linked]] = coupling.tables(link[linked])[:, :size, :size]
-    return best_closed_path(of_rows, pairwise)[0][place]
+    if len(linked) == len(chain):
+        return best_closed_path(of_rows, pairwise)[0]
+    return best_open_paths(of_rows, pairwise, length)[place]
 
 
-def _aligned(ends: npt.NDArray[np.bool_]) -> tuple[Ints, int]:
-    """Places (n,) for the rows of open chains, of which `ends` tells the last rows; and how many places there are.
+def _aligned(ends: npt.NDArray[np.bool_]) -> tuple[Ints, int, int]:
+    """Places (n,) for the rows of open chains, of which `ends` tells the last rows, in paths of one length.
 
-    Each chain begins at a multiple of its length, rounded up to a power of two. So it is always joined in the same
-    halves, and between paths with the same score it takes the same one in any company.
+    Each chain begins at a multiple of its own length, rounded up to a power of two. So it is always joined in the
+    same halves, and between paths with the same score it takes the same one in any company. Returns the places, the
+    length of the paths, which is that of the longest chain, and their number. One closed circle is one path.
     """
     last = np.flatnonzero(ends)
     if not len(last):
-        return np.arange(len(ends)), len(ends)
+        return np.arange(len(ends)), len(ends), 1
     length = np.diff(last, prepend=-1)
     room = np.int64(1) << np.frexp(length - 1)[1].astype(np.int64)
     order = np.argsort(-room, kind="stable")
     start = np.empty_like(room)
     start[order] = np.cumsum(room[order]) - room[order]
-    return np.arange(len(ends)) + np.repeat(start - (last + 1 - length), length), int(room.sum())
+    longest = int(room.max())
+    place = np.arange(len(ends)) + np.repeat(start - (last + 1 - length), length)
+    return place, longest, -(-int(room.sum()) // longest)

@@ -20,16 +20,30 @@ def best_closed_path(unary: Ints, pairwise: Ints) -> tuple[Ints, int]:
     `unary` is (n, states), `pairwise` (n, states, states); states that do not exist score IMPOSSIBLE. Ties go to
     the lower state. Returns the states and the score.
     """
-    matrices = unary[:, :, None] + pairwise
-    middles: list[npt.NDArray[np.uint16]] = []
-    while len(matrices) > 1:
+    matrices, middles = _joined(unary[:, :, None] + pairwise, 1)
+    around = np.diagonal(matrices[0])
+    best = int(around.argmax())
+    return _unfold(np.array([best]), middles), int(around[best])
+
+
+def best_open_paths(unary: Ints, pairwise: Ints, length: int) -> Ints:
+    """The same for many open paths of one length, a power of two: states (n,), path after path.
+
+    The last pairwise scores of every path must be 0: what comes after it does not matter.
+    """
+    matrices, middles = _joined(unary[:, :, None] + pairwise, len(unary) // length)
+    return _unfold(matrices[:, :, 0].argmax(axis=1), middles)
+
+
+def _joined(matrices: Ints, stretches: int) -> tuple[Ints, list[npt.NDArray[np.uint16]]]:
+    """Join neighbouring stretches two by two until so many are left; and the states in the middle of each join."""
+    middles = []
+    while len(matrices) > stretches:
         pairs = len(matrices) // 2
         joined, middle = _join(matrices[0 : 2 * pairs : 2], matrices[1 : 2 * pairs : 2])
         matrices = np.concatenate((joined, matrices[2 * pairs :]))
         middles.append(middle)
-    around = np.diagonal(matrices[0])
-    best = int(around.argmax())
-    return _unfold(best, middles), int(around[best])
+    return matrices, middles
 
 
 def _join(first: Ints, second: Ints) -> tuple[Ints, npt.NDArray[np.uint16]]:
@@ -43,12 +57,11 @@ def _join(first: Ints, second: Ints) -> tuple[Ints, npt.NDArray[np.uint16]]:
     return best, middle
 
 
-def _unfold(best: int, middles: list[npt.NDArray[np.uint16]]) -> Ints:
-    """Starting states of all stretches, from the whole circle's down to the single angle bins'."""
-    path = np.array([best])
+def _unfold(path: Ints, middles: list[npt.NDArray[np.uint16]]) -> Ints:
+    """First states of all stretches, from those of the longest down to the single angle bins'."""
     for middle in reversed(middles):
         pairs = len(middle)
-        stop = np.roll(path, -1)
+        stop = np.append(path[1:], path[:1])
         finer = np.empty(len(path) + pairs, np.int64)
         finer[0 : 2 * pairs : 2] = path[:pairs]
         finer[1 : 2 * pairs : 2] = middle[np.arange(pairs), path[:pairs], stop[:pairs]]
