@@ -46,7 +46,7 @@ def test_scans_come_out_with_poses_and_resolved_ranges():
     np.testing.assert_allclose(block.map_from_laser_first[:, 0, 3], (1.5, 2.5))
     np.testing.assert_array_equal(block.map_from_laser_last, block.map_from_laser_first)
     np.testing.assert_allclose(block.bearings, (-0.5, -0.25, 0))
-    assert (block.clear_range, block.recording) == (30.0, 0)
+    assert (block.clear_range, block.scanner) == (30.0, 0)
     assert (out[-1], counts.read, counts.dropped) == (EndOfRecording(0), 2, {})
 
 
@@ -124,7 +124,6 @@ def test_overlapping_recordings_are_merged_and_share_transforms():
     b = FakeRecording([[MOUNT, driving(0, 9)], [scans([2, 3, 6])]])
     out, counts = replayed(a, b)
     assert seconds(out) == [1, 2, 3, 5, 6, 7]
-    assert [block.recording for block in blocks(out)] == [0, 1, 0, 1, 0]
     assert counts.dropped == {"duplicate": 1}
     assert out[-1] == EndOfRecording(0)
     assert out[out.index(EndOfRecording(1)) - 1].stamps_ns.tolist() == ns(6).tolist()

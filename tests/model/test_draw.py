@@ -41,13 +41,35 @@ def half_life_for(window, probability):
 def test_the_share_one_scan_replaces_follows_from_the_half_life():
     """u = 1 - exp(-lambda), lambda = ln 2 / half-life, q = N u; the printed e^(lambda - 1) gives 0.38 here."""
     level = Level("mid", 25, 20.0)
-    assert level.share_taken(1.0) == pytest.approx(25 * (1 - 2 ** (-1 / 20)))
-    assert level.share_taken(1.0) == pytest.approx(0.8516, abs=1e-4)
-    assert Level("long", 100, 200.0).share_taken(1.0) == pytest.approx(0.3460, abs=1e-4)
+    assert level.places_replaced(1.0) == pytest.approx(25 * (1 - 2 ** (-1 / 20)))
+    assert level.places_replaced(1.0) == pytest.approx(0.8516, abs=1e-4)
+    assert Level("long", 100, 200.0).places_replaced(1.0) == pytest.approx(0.3460, abs=1e-4)
 
 
-def test_a_level_never_takes_more_than_the_whole_scan():
-    assert Level("short", 7, 4.0).share_taken(1.0) == 1.0
+def test_a_half_life_that_the_window_cannot_have_is_told_as_a_shortfall():
+    """100 places with a half-life of 30 s at one scan a second: 2.28 places are due, one can be filled."""
+    draw = Draw(Level("long", 100, 30.0, in_seconds=True))
+    draw.add_nodes(1)
+    stamps_ns = np.arange(1, 501) * 1_000_000_000
+    draw.taken(Groups.of(np.zeros(500, np.int64)), stamps_ns, np.array([7], np.uint64))
+    assert draw.shortfall == pytest.approx(1 - 1 / 2.284, abs=1e-3)
+
+
+def test_a_half_life_that_the_window_can_have_has_no_shortfall():
+    draw = Draw(Level("long", 100, 100.0, in_seconds=True))
+    draw.add_nodes(1)
+    stamps_ns = np.arange(1, 501) * 1_000_000_000
+    draw.taken(Groups.of(np.zeros(500, np.int64)), stamps_ns, np.array([7], np.uint64))
+    assert draw.shortfall == 0
+
+
+def test_stamps_that_begin_anew_stand_for_no_time():
+    draw = Draw(Level("mid", 25, 30.0, in_seconds=True))
+    draw.add_nodes(1)
+    groups, keys = Groups.of(np.zeros(100, np.int64)), np.array([7], np.uint64)
+    stamps_ns = np.arange(1, 101) * 1_000_000_000
+    draw.taken(groups, stamps_ns, keys)
+    assert draw.taken(groups, stamps_ns, keys).sum() > 20
 
 
 def test_a_young_memory_takes_every_scan_until_its_window_is_full():

@@ -69,3 +69,26 @@ def test_the_gate_remembers_from_block_to_block():
 @pytest.mark.parametrize("gate", [GATE, OPEN])
 def test_no_scans_pass_no_gate(gate):
     assert passed(gate, []) == []
+
+
+def test_two_scanners_of_a_standing_robot_pass_once_each():
+    """The rear one looks the other way, from another place: that is no turn and no travel."""
+    last = {}
+    for second in range(10):
+        for scanner, place in enumerate(((0.2, 0.0, 0.0), (-0.2, 0.0, math.pi))):
+            passes = passing(GATE, [0], np.array([place]), np.array([second * 10**9]), last, scanner)
+            assert passes.tolist() == [second == 0]
+
+
+def test_stamps_that_begin_anew_do_not_close_the_gate():
+    last = {}
+    places = np.array([[x, 0.0, 0.0] for x in (0.0, 1.0, 2.0)])
+    stamps_ns = np.array([100, 101, 102]) * 10**9
+    assert passing(GATE, [0, 0, 0], places, stamps_ns, last).all()
+    assert passing(GATE, [0, 0, 0], places[::-1] + 0.5, stamps_ns - 90 * 10**9, last).all()
+
+
+@pytest.mark.parametrize("gate", [Gate(0.05, 0.0, 0), Gate(0.0, 0.1, 0)])
+def test_a_criterion_of_zero_is_left_out(gate):
+    places = np.zeros((5, 3))
+    assert passing(gate, [0] * 5, places, np.arange(5) * 10**9, {}).tolist() == [True] + [False] * 4

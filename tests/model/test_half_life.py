@@ -60,7 +60,7 @@ class Experiment:
 
 def age_of(level, step_s=0.1):
     """Scans after which a level has long been full and takes no more than its due."""
-    due = level.share_taken(step_s if level.in_seconds else 1.0)
+    due = level.places_replaced(step_s if level.in_seconds else 1.0)
     return int(1.5 * level.window / due) + 2 * level.window
 
 

@@ -37,7 +37,7 @@ _ENTRY = np.dtype(
 class Kind:
     """What the scans of one block have in common."""
 
-    recording: int
+    scanner: int  # rank of its topic among the chosen ones
     angle_min: float  # [rad]
     angle_increment: float  # [rad]
     count: int
@@ -76,14 +76,14 @@ class ScanWindow:
         self._kinds: dict[int, Kind] = {}
         self._kind_codes: dict[Kind, int] = {}
 
-    def add(self, batch: ScanBatch, ranges: Float32s, kind: Kind, *, topic: int, frame: int) -> None:
+    def add(self, batch: ScanBatch, ranges: Float32s, kind: Kind, *, recording: int, frame: int) -> None:
         """Take in scans with their resolved ranges (n, beams); they arrive once ``arrive`` gets so far."""
         entries = np.empty(len(ranges), _ENTRY)
         entries["stamp"], entries["log"] = batch.stamps_ns, batch.log_ns
         entries["sweep"] = sweep_durations(batch)
         code = self._kind_codes.setdefault(kind, self._chunk_count)
         self._kinds[code] = kind
-        entries["recording"], entries["topic"] = kind.recording, topic
+        entries["recording"], entries["topic"] = recording, kind.scanner
         entries["frame"], entries["kind"] = frame, code
         entries["chunk"], entries["row"] = self._chunk_count, np.arange(len(ranges))
         self._chunks[self._chunk_count] = ranges, code

@@ -160,13 +160,13 @@ class _Drive:
         if not _has_bearings(batch.layout):
             self._counts.drop("malformed", len(batch.stamps_ns))
             return
-        layout, frame = batch.layout, batch.frame_id.lstrip("/")
+        layout, frame, rank = batch.layout, batch.frame_id.lstrip("/"), self._rank[batch.topic]
         reading = self._reading(index, batch)
         self._window.add(
             batch,
             reading.resolve(batch.ranges, batch.range_max),
-            Kind(index, layout.angle_min, layout.angle_increment, layout.count, reading.clear_range),
-            topic=self._rank[batch.topic],
+            Kind(rank, layout.angle_min, layout.angle_increment, layout.count, reading.clear_range),
+            recording=index,
             frame=self._frame_codes.setdefault(frame, len(self._frame_codes)),
         )
         self._newest_ns[index] = max(self._newest_ns.get(index, BEGINNING_NS), int(batch.stamps_ns.max()))
@@ -244,7 +244,7 @@ class _Drive:
                 clear_range=kind.clear_range,
                 map_from_laser_first=first[run],
                 map_from_laser_last=last[run],
-                recording=kind.recording,
+                scanner=kind.scanner,
             )
 
 

@@ -158,11 +158,11 @@ def _examined(
     sweeps = []
     for index, batch in sample.of_topic(topic):
         source = poses.source(index, selection.map_frame, selection.pose)
-        sweeps.append(_placed(batch, beams[index, topic], source, index))
+        sweeps.append(_placed(batch, beams[index, topic], source))
     return examine([block for block in sweeps if len(block)], radius)
 
 
-def _placed(batch: ScanBatch, beams: Beams, source: PoseSource, recording: int) -> Sweeps:
+def _placed(batch: ScanBatch, beams: Beams, source: PoseSource) -> Sweeps:
     """The scans of a batch that have a pose."""
     map_from_laser, known = source.lookup(batch.frame_id, batch.stamps_ns)
     layout = batch.layout
@@ -173,7 +173,6 @@ def _placed(batch: ScanBatch, beams: Beams, source: PoseSource, recording: int) 
         clear_range=beams.clear_range,
         map_from_laser_first=map_from_laser[known],
         map_from_laser_last=map_from_laser[known],
-        recording=recording,
     )
 
 

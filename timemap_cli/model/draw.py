@@ -69,6 +69,12 @@ class Draw:
         self._sum = np.zeros(0, np.int64)  # of their shares [2^-32]
         self._next = np.zeros(0, np.int64)  # first turn in which no scan was taken yet
         self._stamp = np.zeros(0, np.int64)  # [ns] the newest scan that reached the level
+        self._wanted = self._granted = 0.0  # shares due in all, and those of them a scan can fill
+
+    @property
+    def shortfall(self) -> float:
+        """Share of what was due that no scan could fill, 0..1."""
+        return 1 - self._granted / self._wanted if self._wanted else 0.0
 
     def add_nodes(self, nodes: int) -> None:
         """Make room for so many nodes in all."""
@@ -81,6 +87,7 @@ class Draw:
         share = self._shares(groups, stamps_ns)
         start = groups.running_sums(share, self._sum) - share
         turn = start >> 32
+        # counters of turns count down from -1: those of scans taken go up from 1 on the same key
         pick = (turn << 32) + (chance.mixed(keys[groups.nodes], ~turn) >> np.uint64(32)).astype(np.int64)
         candidate = start + share > pick
         # the first candidate of each turn is taken; within a turn, what follows a candidate is one too
@@ -99,18 +106,22 @@ class Draw:
         """
         reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
         young = np.minimum(1.0, self._level.window / reached)
-        shares = np.rint(np.maximum(young, self._due(groups, stamps_ns)) * _ONE)
-        return np.asarray(shares, np.int64)
+        due = self._due(groups, stamps_ns)
+        granted = np.minimum(due, 1.0)
+        self._wanted += float(due.sum())
+        self._granted += float(granted.sum())
+        return np.asarray(np.rint(np.maximum(young, granted) * _ONE), np.int64)
 
-    def _due(self, groups: Groups, stamps_ns: Ints) -> npt.NDArray[np.float64] | float:
+    def _due(self, groups: Groups, stamps_ns: Ints) -> npt.NDArray[np.float64]:
+        """Places of the window that each scan should replace; above 1 where it stands for too long a time."""
         if not self._level.in_seconds:
-            return self._level.share_taken(1.0)
+            return np.full(len(stamps_ns), self._level.places_replaced(1.0))
         before = np.roll(stamps_ns, 1)
         first = groups.ranks == 0
         before[first] = self._stamp[groups.distinct]
         self._stamp[groups.nodes] = stamps_ns
         steps = [
-            min((now - then) * 1e-9, LONGEST_STEP) if then != _NEVER else 0.0
+            min(max(now - then, 0) * 1e-9, LONGEST_STEP) if then != _NEVER else 0.0
             for now, then in zip(stamps_ns.tolist(), before.tolist(), strict=True)
         ]
-        return np.array([self._level.share_taken(step) for step in steps])
+        return np.array([self._level.places_replaced(step) for step in steps])

@@ -20,6 +20,9 @@ class Level:
     half_life: float  # [scans] or [s]
     in_seconds: bool = False
 
-    def share_taken(self, step: float) -> float:
-        """Probability with which a scan that stands for `step` scans or seconds enters the memory, at most 1."""
-        return min(1.0, self.window * -math.expm1(-math.log(2) / self.half_life * step))
+    def places_replaced(self, step: float) -> float:
+        """Places of the window to be replaced by a scan that stands for `step` scans or seconds.
+
+        Up to 1 it is the probability with which the scan is taken; more than 1 cannot be had.
+        """
+        return self.window * -math.expm1(-math.log(2) / self.half_life * step)

@@ -19,7 +19,7 @@ from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
 Ints = npt.NDArray[np.int64]
 Counts = npt.NDArray[np.uint32]
 
-_SPARE_NODES = 8  # room made at a time
+_SPARE_ROWS = 8  # room made at a time
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,16 +38,17 @@ class Remembered:
 
 
 class Memory:
-    """Samples and pairs of every node at one level. Grows with the nodes, never with the scans."""
+    """Samples and pairs of every node at one level. Grows with the nodes seen, never with the scans."""
 
     def __init__(self, level: Level, angle_bins: int, seed: int) -> None:
         self.level = level
         self._seed = seed
         self._draw = Draw(level)
-        self._nodes = 0
         self._keys = np.zeros(0, np.uint64)  # per node
-        self._taken = np.zeros(0, np.int64)  # per node: scans that the memory took
-        self._stamps_ns = np.zeros(0, np.int64)  # per node: the newest of them
+        self._row = np.zeros(0, np.int64)  # per node: its row in all that follows, or -1 while it has none
+        self._rows = 0
+        self._taken = np.zeros(0, np.int64)  # scans that the memory took
+        self._stamps_ns = np.zeros(0, np.int64)  # the newest of them
         self._n_samples = np.zeros((0, angle_bins), np.uint32)
         self._n_pairs = np.zeros((0, angle_bins), np.uint32)
         self._missed = np.zeros((0, angle_bins), np.uint32)  # scans taken that did not see the angle bin
@@ -56,20 +57,31 @@ class Memory:
         self._left = np.zeros((0, angle_bins, level.window), np.uint16)
         self._right = np.zeros((0, angle_bins, level.window), np.uint16)
 
+    @property
+    def shortfall(self) -> float:
+        """Share of the scans due that could not be taken, because the half-life asks for more than the window holds."""
+        return self._draw.shortfall
+
     def add_nodes(self, nodes: Sequence[Node]) -> None:
-        """Make room for the nodes that are new at the end of the list."""
-        keys = [chance.key(self._seed, node, self.level.name) for node in nodes[self._nodes :]]
+        """Take note of the nodes that are new at the end of the list."""
+        keys = [chance.key(self._seed, node, self.level.name) for node in nodes[len(self._keys) :]]
         self._keys = np.append(self._keys, np.array(keys, np.uint64))
+        self._row = np.append(self._row, np.full(len(keys), -1))
         self._draw.add_nodes(len(nodes))
-        self._nodes = len(nodes)
+
+    def _make_room(self, nodes: Ints) -> None:
+        """Give a row to each of these nodes that has none."""
+        new = nodes[self._row[nodes] < 0]
+        self._row[new] = np.arange(self._rows, self._rows + len(new))
+        self._rows += len(new)
         room = len(self._taken)
-        if room >= self._nodes:
+        if room >= self._rows:
             return
         counts = (self._n_samples, self._n_pairs, self._missed, self._missed_then)
         for array in (self._taken, self._stamps_ns, *counts):
-            array.resize((self._nodes + _SPARE_NODES, *array.shape[1:]), refcheck=False)
+            array.resize((self._rows + _SPARE_ROWS, *array.shape[1:]), refcheck=False)
         for store in (self._samples, self._left, self._right):
-            store.resize((self._nodes + _SPARE_NODES, *store.shape[1:]), refcheck=False)
+            store.resize((self._rows + _SPARE_ROWS, *store.shape[1:]), refcheck=False)
             store[room:] = UNSEEN
 
     def remember(self, nodes: Ints, stamps_ns: Ints, ranges: Ranges) -> Ints:
@@ -78,17 +90,22 @@ class Memory:
         Returns the numbers of the nodes whose memory changed, ascending.
         """
         groups = Groups.of(nodes)
-        rows = groups.order[self._draw.taken(groups, stamps_ns[groups.order], self._keys)]
-        groups = Groups.of(nodes[rows])
-        node, ranges = groups.nodes, ranges[rows]
-        count = groups.ranks + 1 + self._taken[node]
-        random = chance.mixed(chance.mixed(self._keys[node], count)[:, None], np.arange(ranges.shape[1]))
+        chosen = groups.order[self._draw.taken(groups, stamps_ns[groups.order], self._keys)]
+        nodes, stamps_ns, ranges = nodes[chosen], stamps_ns[chosen], ranges[chosen]  # by node, then by time
+        changed = nodes[np.flatnonzero(np.diff(nodes, prepend=-1))]
+        self._make_room(changed)
+        groups = Groups.of(self._row[nodes])
+        row, order = groups.nodes, groups.order
+        ranges = ranges[order]
+        count = groups.ranks + 1 + self._taken[row]
+        keys = chance.mixed(self._keys[nodes[order]], count)
+        random = chance.mixed(keys[:, None], np.arange(ranges.shape[1]))
         seen = ranges != UNSEEN
         self._store_samples(groups, ranges, seen, random)
         self._store_pairs(groups, ranges, seen, random << np.uint64(32))
-        self._taken[node] = count  # ascending within a node: the last one stays
-        self._stamps_ns[node] = stamps_ns[rows]
-        return groups.distinct
+        self._taken[row] = count  # ascending within a node: the last one stays
+        self._stamps_ns[row] = stamps_ns[order]
+        return changed
 
     def _store_samples(self, groups: Groups, ranges: Ranges, seen: Bools, random: chance.Keys) -> None:
         missed = groups.running_sums(~seen, self._missed)
@@ -122,15 +139,17 @@ class Memory:
         return place
 
     def recall(self, nodes: Ints) -> Remembered:
-        """Copy of the memory of m nodes."""
+        """Copy of the memory of m different nodes."""
+        self._make_room(nodes)
+        rows = self._row[nodes]
         return Remembered(
-            self._samples[nodes],
-            self._missed[nodes][:, :, None] - self._missed_then[nodes],
-            self._left[nodes],
-            self._right[nodes],
-            self._n_samples[nodes].astype(np.int64),
-            self._n_pairs[nodes].astype(np.int64),
-            self._taken[nodes],
-            self._stamps_ns[nodes],
+            self._samples[rows],
+            self._missed[rows][:, :, None] - self._missed_then[rows],
+            self._left[rows],
+            self._right[rows],
+            self._n_samples[rows].astype(np.int64),
+            self._n_pairs[rows].astype(np.int64),
+            self._taken[rows],
+            self._stamps_ns[rows],
             self.level.window,
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from timemap_cli.model.gate import Gate, Passage, passing
+from timemap_cli.model.gate import Gate, Passages, passing
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import NO_NODE, Placement
 from timemap_cli.model.sweeps import Sweeps
@@ -51,7 +51,7 @@ class Observer:
         """`radius`: how far a node looks [m]; `spacing` [m] as in Placement; given `nodes` are all there will be."""
         self._placement = Placement(spacing, nodes)
         self._gate = gate
-        self._passages: dict[int, Passage] = {}
+        self._passages: Passages = {}
         self._angle_bins = angle_bins
         self._radius = radius
 
@@ -68,7 +68,7 @@ class Observer:
             nodes,
             stamps_ns,
             ranges[judged],
-            passing(self._gate, nodes.tolist(), places[rows], stamps_ns, self._passages),
+            passing(self._gate, nodes.tolist(), places[rows], stamps_ns, self._passages, sweeps.scanner),
             node_not_seen=len(near) - len(rows),
             no_node=len(sweeps) - len(near),
             all_nodes=self._placement.nodes,

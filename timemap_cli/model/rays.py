@@ -50,7 +50,7 @@ class _Fan:
 def rays(sweeps: Sweeps, angle_bins: int) -> Rays:
     """Rays of a block of scans for nodes with so many angle bins."""
     fan = _fan(sweeps.bearings.tobytes())
-    group = max(1, int(math.pi / angle_bins / fan.spacing + 1e-6))
+    group = max(1, min(fan.beams, int(math.pi / angle_bins / fan.spacing + 1e-6)))
     kept = -(-fan.beams // group)
     behind = np.arange(fan.beams, len(fan.cos))
     length = np.full((len(sweeps), kept + len(behind)), np.nan, np.float32)

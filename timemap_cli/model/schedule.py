@@ -26,6 +26,8 @@ class Schedule:
     def parts(self, stamps_ns: npt.NDArray[np.int64]) -> Iterator[tuple[slice, bool]]:
         """Consecutive parts of a block with ascending stamps (n,), and whether estimates are due after each.
 
+        Where stamps begin anew, before those of an earlier block, so do the periods.
+
         Time is cut before the first scan at or after a whole number of periods since the first scan of all, so that the
         estimates show what was known before it. A part may be empty.
         """
@@ -43,7 +45,7 @@ class Schedule:
         start = 0
         while start < len(stamps_ns):
             now = int(stamps_ns[start])
-            if self._due_ns is None:
+            if self._due_ns is None or now < self._due_ns - self._period.length:
                 self._due_ns = now + self._period.length
             elif now >= self._due_ns:
                 yield slice(start, start), True

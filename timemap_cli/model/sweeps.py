@@ -22,7 +22,7 @@ class Sweeps:
     clear_range: float  # [m] how far a missing return frees space
     map_from_laser_first: npt.NDArray[np.float64]  # (n, 3, 4) at the first beam
     map_from_laser_last: npt.NDArray[np.float64]  # (n, 3, 4) at the last beam
-    recording: int  # index of the recording it comes from
+    scanner: int = 0  # which scanner, where the robot has several
 
     def __len__(self) -> int:
         return len(self.stamps_ns)
@@ -36,5 +36,5 @@ class Sweeps:
             self.clear_range,
             self.map_from_laser_first[rows],
             self.map_from_laser_last[rows],
-            self.recording,
+            self.scanner,
         )

@@ -1,5 +1,6 @@
 """From a scan to what it would have been from a node's centre (paper, eq. 1 and 2, and what they leave open)."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -47,7 +48,7 @@ def _from_nodes(
     outline = outlines(sweeps, centres, angle_bins)
     sight = line_of_sight(outline, angle_bins)
     distance = _distances(outline)
-    reach = round(radius * 1000)
+    reach = math.floor(radius * 1000 + 1e-6)
     ranges = _nearest_hits(outline, sight, distance, reach)
     empty = ranges == UNSEEN
     ranges[empty & _clear(outline, sight, distance, reach)] = CLEAR
