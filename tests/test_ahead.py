@@ -45,3 +45,19 @@ def test_a_process_that_ends_early_is_told():
 
     with pytest.raises(TimemapError, match="ended from outside"):
         list(ahead(items, processors=2))
+
+
+class OddError(Exception):
+    """Cannot be made again from what it hands to pickle."""
+
+    def __init__(self, what, where):
+        super().__init__(f"{what} at {where}")
+
+
+def test_an_error_that_cannot_be_sent_comes_in_words():
+    def items():
+        yield 1
+        raise OddError("a", "b")
+
+    with pytest.raises(RuntimeError, match="OddError: a at b"):
+        list(ahead(items, processors=2))

@@ -2,8 +2,10 @@
 
 import multiprocessing
 import os
+import pickle
 import signal
 import sys
+import traceback
 from collections.abc import Callable, Generator, Iterable
 from multiprocessing.connection import Connection
 from typing import Any, TypeVar
@@ -53,14 +55,23 @@ def _send_all(make: Callable[[], Iterable[Any]], receiver: Connection, sender: C
     except BrokenPipeError:
         pass  # nobody wants the rest
     except Exception as error:  # noqa: BLE001 - whatever it is, it belongs to who asked
-        sender.send((None, error))
+        sender.send((None, _sendable(error)))
+
+
+def _sendable(error: Exception) -> Exception:
+    """The error itself if it survives pickling, else its traceback in words."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:  # noqa: BLE001 - what an error's own code raises can be anything
+        return RuntimeError("".join(traceback.format_exception(error)))
+    return error
 
 
 def _received(receiver: Connection) -> Generator[Any, None, None]:
     while True:
         try:
             message = receiver.recv()
-        except EOFError:
+        except (EOFError, OSError):  # between two messages, or within one
             raise TimemapError("the process that reads the recordings was ended from outside") from None
         if message is None:
             return

@@ -84,12 +84,6 @@ def newest_result(folder: Path) -> Path:
     return found[-1]
 
 
-def levels_of(result: Path) -> tuple[str, ...]:
-    """Names of a result's levels, fastest first."""
-    with ResultReader(result) as reader:
-        return tuple(reader.levels)
-
-
 def _require_level(reader: ResultReader, result: Path, level: str) -> None:
     if level not in reader.levels:
         raise UsageError(

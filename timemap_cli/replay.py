@@ -14,6 +14,7 @@ from typing import Any, Protocol
 from timemap_cli import assembly
 from timemap_cli.ahead import ahead
 from timemap_cli.config import Settings, dump, settings_hash
+from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
@@ -25,7 +26,7 @@ from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.model.time_map import TimeMap
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
-from timemap_cli.times import parse_time
+from timemap_cli.times import format_time, parse_time
 
 _NOT_LOST = ("outside_time",)  # reasons for dropping a scan that the user asked for
 
@@ -72,18 +73,19 @@ def replay(
     with ExitStack() as stack:
         recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
         plan = survey(recordings, settings)
-        given = read_nodes(nodes) if nodes else ()
+        given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
         run = _Run(assembly.time_map(settings, given), result, assembly.schedule(settings))
-        start_ns, end_ns = _span_ns(recordings, start, end)
+        start_ns, end_ns = _span_ns(plan, start, end)
         counts = ScanCounts()
         blocks = sweeps(recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns)
         observed = partial(_observed, blocks, assembly.observer(settings, given), counts, recordings)
         for step in stack.enter_context(closing(ahead(observed))):
             run.take(step)
             if progress is not None:
-                progress(_share_done(recordings, run.newest_ns), run.read.counts.read)
+                progress(_share_done(plan, run.newest_ns), run.read.counts.read)
         summary = _summary(output, settings, plan, run, time.perf_counter() - began)
+        _require_some_use(summary)
         metadata = _metadata(settings, recordings, run.read.digests, summary)
         result.finish(metadata, dump(settings), _report(plan, summary))
     return summary
@@ -125,7 +127,8 @@ class _Run:
         self.dropped: Counter[str] = Counter()
         self.read = _Step(None, ScanCounts(), ())
         self.newest_ns: int | None = None  # stamp of the newest scan learnt
-        self._maps_ns: int | None = None  # stamp of the newest maps written
+        self.began_anew = False  # stamps went back from one recording to the next
+        self._maps_are_due = False
         self._result = result
         self._schedule = schedule
         self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in time_map.levels}
@@ -146,11 +149,11 @@ class _Run:
                 self._write_estimates()
 
     def _end_recording(self) -> None:
-        """Write the maps, once at each stamp: recordings may end together."""
+        """Write the maps, if anything has changed since: recordings may end together."""
         self._write_estimates()
-        if self.newest_ns is not None and self.newest_ns != self._maps_ns:
+        if self.newest_ns is not None and self._maps_are_due:
             self._result.write_maps(self._latest, self.time_map.nodes, self.newest_ns)
-            self._maps_ns = self.newest_ns
+            self._maps_are_due = False
 
     @property
     def span_ns(self) -> int:
@@ -161,9 +164,13 @@ class _Run:
         if not len(scans):
             return
         self.time_map.learn(scans)
-        is_first = self.newest_ns is None
-        if is_first:  # the result's time begins with the first scan, not with the first estimates
-            self._result.write_nodes(self.time_map.nodes, int(scans.stamps_ns[0]))
+        first_ns = int(scans.stamps_ns[0])
+        if (
+            self.newest_ns is None
+        ):  # the result's time begins with the first scan, not with the first estimates
+            self._result.write_nodes(self.time_map.nodes, first_ns)
+        elif first_ns < self.newest_ns:
+            self.began_anew = True
         self.newest_ns = int(scans.stamps_ns[-1])
 
     def _write_estimates(self) -> None:
@@ -174,6 +181,7 @@ class _Run:
         self._result.write_estimates(estimates, self.newest_ns)
         for found in estimates:
             self._latest[found.level][found.node] = found
+            self._maps_are_due = True
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
@@ -187,22 +195,25 @@ def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> R
     )
 
 
-def _span_ns(
-    recordings: Sequence[Recording], start: str | None, end: str | None
-) -> tuple[int | None, int | None]:
-    first, last = min(r.start_ns for r in recordings), max(r.end_ns for r in recordings)
-    return (
-        None if start is None else parse_time(start, first, last),
-        None if end is None else parse_time(end, first, last),
-    )
+def _span_ns(plan: Survey, start: str | None, end: str | None) -> tuple[int | None, int | None]:
+    """What is replayed, by the scans' stamps; UsageError where that is nothing."""
+    start_ns = None if start is None else parse_time(start, *plan.span_ns)
+    end_ns = None if end is None else parse_time(end, *plan.span_ns)
+    if start_ns is not None and end_ns is not None and start_ns >= end_ns:
+        raise UsageError(f"--start {start} is not before --end {end}", hint=_span_hint(plan))
+    return start_ns, end_ns
 
 
-def _share_done(recordings: Sequence[Recording], now_ns: int | None) -> float:
+def _span_hint(plan: Survey) -> str:
+    return "the recordings go from {} to {}".format(*map(format_time, plan.span_ns))
+
+
+def _share_done(plan: Survey, now_ns: int | None) -> float:
     """Share of the recordings' time that is over now."""
     if now_ns is None:
         return 0.0
-    done = sum(min(max(now_ns, r.start_ns), r.end_ns) - r.start_ns for r in recordings)
-    return done / max(1, sum(r.end_ns - r.start_ns for r in recordings))
+    done = sum(min(max(now_ns, begin_ns), end_ns) - begin_ns for begin_ns, end_ns in plan.spans_ns)
+    return done / max(1, sum(end_ns - begin_ns for begin_ns, end_ns in plan.spans_ns))
 
 
 def _summary(output: Path, settings: Settings, plan: Survey, run: _Run, seconds: float) -> ReplaySummary:
@@ -222,7 +233,22 @@ def _summary(output: Path, settings: Settings, plan: Survey, run: _Run, seconds:
     )
 
 
+def _require_some_use(summary: ReplaySummary) -> None:
+    if not summary.scans_used:
+        reasons = (
+            ", ".join(f"{reason} {count}" for reason, count in summary.dropped.items()) or "there is none"
+        )
+        raise TimemapError(
+            f"no scan could be used: {reasons}", hint="timemap info LOG... tells what the recordings hold"
+        )
+
+
 def _other_warnings(run: _Run) -> Generator[str, None, None]:
+    if run.began_anew:
+        yield "the stamps of a recording begin before those of the one before it end: do not ask for times in between"
+    for level, shortfall in run.time_map.shortfalls.items():
+        if shortfall > 0.1:
+            yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
     if unusable := run.read.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
     if run.span_ns > VIEWERS_SPAN_NS:
@@ -247,7 +273,7 @@ def _metadata(
 def _report(plan: Survey, summary: ReplaySummary) -> dict[str, Any]:
     """The summary as the result keeps it: nothing in it depends on where or how fast it was made."""
     return {
-        "schema": "timemap.replay/1",
+        "schema": "timemap.report/1",
         "nodes": summary.nodes,
         "levels": list(summary.levels),
         "scans": {"read": summary.scans_read, "used": summary.scans_used, "dropped": dict(summary.dropped)},

@@ -13,7 +13,7 @@ from timemap_cli.results.given_nodes import read_nodes
 def test_places_are_read_from_lines(tmp_path, text):
     path = tmp_path / "nodes.csv"
     path.write_text(text)
-    assert read_nodes(path) == (Node(1.5, -2.0), Node(3.0, 4.0))
+    assert read_nodes(path, "map") == (Node(1.5, -2.0), Node(3.0, 4.0))
 
 
 @pytest.mark.parametrize("line", ["1", "1,2,3", "a,b", "nan,1", "inf 2"])
@@ -21,12 +21,12 @@ def test_a_line_that_is_no_place_is_named(tmp_path, line):
     path = tmp_path / "nodes.csv"
     path.write_text(f"1,2\n{line}\n")
     with pytest.raises(UsageError, match=r"line 2: '.*' is not a place"):
-        read_nodes(path)
+        read_nodes(path, "map")
 
 
 def test_a_missing_or_empty_file_is_an_error(tmp_path):
     with pytest.raises(UsageError, match="there is no file"):
-        read_nodes(tmp_path / "nodes.csv")
+        read_nodes(tmp_path / "nodes.csv", "map")
     (tmp_path / "nodes.csv").write_text("x,y\n")
     with pytest.raises(UsageError, match="holds no nodes"):
-        read_nodes(tmp_path / "nodes.csv")
+        read_nodes(tmp_path / "nodes.csv", "map")

@@ -21,6 +21,7 @@ class ProgressBar:
         if self._shows:
             from tqdm import tqdm
 
+            tqdm.monitor_interval = 0  # its thread would be alive when a process is forked
             self._bar = tqdm(
                 total=1.0,
                 file=self._terminal.stderr,

@@ -34,6 +34,14 @@ class Survey:
     beams: Mapping[tuple[int, str], Beams]  # (index of the recording, scan topic); none where it has no scans
     missing_returns: Mapping[str, MissingReturns]  # scan topic -> what the test found; empty where not tested
     problems: tuple[str, ...]
+    spans_ns: tuple[
+        tuple[int, int], ...
+    ]  # begin and end of each recording that has scans, in time of their stamps
+
+    @property
+    def span_ns(self) -> tuple[int, int]:
+        """Begin of the first and end of the last recording, in time of the scans' stamps."""
+        return min(begin for begin, _ in self.spans_ns), max(end for _, end in self.spans_ns)
 
     @property
     def no_return(self) -> str:
@@ -73,7 +81,7 @@ def survey_sample(
         if not _are_clear(missing.get(topic), settings.input):
             beams |= {key: b.ignoring_missing() for key, b in beams.items() if key[1] == topic}
     problems = _problems(recordings, sample, poses, selection) + _short_sighted(beams, settings)
-    return Survey(selection, beams, missing, problems)
+    return Survey(selection, beams, missing, problems, _spans_ns(recordings, sample, selection))
 
 
 def topics_of(recordings: Sequence[Recording]) -> dict[str, str]:
@@ -126,6 +134,23 @@ class SampledPoses:
         return any(
             self.are_known(index, topic, choice) for index, name in self._sample.scans if name == topic
         )
+
+
+def _spans_ns(
+    recordings: Sequence[Recording], sample: Sample, selection: Selection
+) -> tuple[tuple[int, int], ...]:
+    """Log times of the recordings' ends as stamps: what was logged elsewhere may have been logged at another time."""
+    found = []
+    for index, recording in enumerate(recordings):
+        batches = [b for topic in selection.scan_topics for b in sample.scans.get((index, topic), ())]
+        if batches:
+            stamps_ns = np.concatenate([batch.stamps_ns for batch in batches])
+            log_ns = np.concatenate([batch.log_ns for batch in batches])
+            first, last = int(log_ns.argmin()), int(log_ns.argmax())
+            begin_ns = recording.start_ns + int(stamps_ns[first] - log_ns[first])
+            end_ns = recording.end_ns + int(stamps_ns[last] - log_ns[last])
+            found.append((begin_ns, max(begin_ns, end_ns)))
+    return tuple(found)
 
 
 def _pose_topics(

@@ -44,7 +44,7 @@ def passing(
     """Which of n scans pass, each judged against its own node's last; `last` is brought up to date.
 
     `places` is (n, 3): x, y [m, map frame] and yaw [rad] of the laser. Scanners are judged each by itself: they sit
-    at different places of the robot. The decision on a scan needs the one before it, so this is a plain loop over scans.
+    at different places of the robot. A decision needs the one before it, so this is a plain loop over scans.
     """
     passes = np.ones(len(nodes), np.bool_)
     if not (gate.min_travel or gate.min_turn or gate.min_interval_ns):

@@ -38,6 +38,11 @@ class TimeMap:
         self._memories = [Memory(level, angle_bins, seed) for level in levels]
         self._changed: list[set[int]] = [set() for _ in levels]
 
+    @property
+    def shortfalls(self) -> dict[str, float]:
+        """By level: share of what its half-life asks it to forget that its window is too long for."""
+        return {memory.level.name: memory.shortfall for memory in self._memories}
+
     def learn(self, seen: Observations) -> None:
         """Remember: the fastest level is offered every scan, slower ones those that passed the gate."""
         known = int(seen.nodes.max(initial=-1)) + 1

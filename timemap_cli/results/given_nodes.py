@@ -10,10 +10,11 @@ from timemap_cli.results.reader import ResultReader
 _MCAP_MAGIC = b"\x89MCAP"
 
 
-def read_nodes(path: Path) -> tuple[Node, ...]:
+def read_nodes(path: Path, map_frame: str) -> tuple[Node, ...]:
     """Nodes of an earlier result, or of a text file with lines `x, y` or `x y` [m, map frame]; `x, y` may come first.
 
-    UsageError where there is no such file or no node in it, TimemapError where it cannot be read.
+    UsageError where there is no such file, no node in it, or a result in another frame than `map_frame`; TimemapError
+    where it cannot be read.
     """
     try:
         data = path.read_bytes() if path.is_file() else None
@@ -23,6 +24,11 @@ def read_nodes(path: Path) -> tuple[Node, ...]:
         raise UsageError(f"there is no file {path}", hint="--nodes NODES.csv, or an earlier result")
     if data.startswith(_MCAP_MAGIC):
         with ResultReader(path) as result:
+            if result.map_frame != map_frame:
+                raise UsageError(
+                    f"the nodes of {path} stand in '{result.map_frame}', the poses are in '{map_frame}'",
+                    hint=f"--map-frame {result.map_frame}, or another result",
+                )
             return tuple(result.nodes)
     lines = [line.strip() for line in data.decode(errors="replace").splitlines()]
     if lines and lines[0].lower().replace(",", " ").split() == ["x", "y"]:

@@ -1,0 +1,99 @@
+"""Whole replays of small recordings: what is told, what is refused, which times are meant."""
+
+import numpy as np
+import pytest
+
+from tests.logs.recorded import ROS2, START_NS, Message, scan, transforms, write_mcap
+from timemap_cli.config import load
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.replay import replay
+from timemap_cli.results.reader import ResultReader
+
+DAY_NS = 86_400_000_000_000
+BEARINGS = np.radians(np.arange(-60.0, 61.0))
+STILL = (0, 0, 0, 1)
+SETTINGS = load(None)
+
+
+def standing_log(path, n_scans=100, start_ns=START_NS, log_later_ns=0, world="map", hole=False):
+    """Ten scans a second of a wall 2 m away, and nothing moves."""
+    mount = transforms(ROS2, (start_ns, "base_link", "laser", (0, 0, 0.2, *STILL)))
+    messages = [Message("/tf_static", start_ns + log_later_ns, mount)]
+    ranges = np.full_like(BEARINGS, np.nan) if hole else 2 / np.cos(BEARINGS)
+    for i in range(n_scans):
+        now, log_ns = start_ns + i * 100_000_000, start_ns + i * 100_000_000 + log_later_ns
+        messages.append(
+            Message("/tf", log_ns, transforms(ROS2, (now, world, "base_link", (0, 0, 0, *STILL))))
+        )
+        shape = {"angle_min": float(BEARINGS[0]), "angle_increment": float(np.radians(1.0))}
+        messages.append(Message("/scan", log_ns, scan(ROS2, now, ranges, **shape)))
+    return write_mcap(path, messages)
+
+
+def replayed(tmp_path, *logs, settings=SETTINGS, **options):
+    return replay(logs, tmp_path / "out.timemap.mcap", settings, **options)
+
+
+@pytest.mark.parametrize("log_later_ns", [0, 40 * DAY_NS])
+def test_times_count_from_the_first_scan_whenever_it_was_logged(tmp_path, log_later_ns):
+    log = standing_log(tmp_path / "a.mcap", log_later_ns=log_later_ns)
+    summary = replayed(tmp_path, log, start="+2s", end="end-3s")
+    assert summary.dropped == {"outside_time": 20 + 31}  # the end itself, 6.9 s, is out
+    assert not summary.data_lost
+
+
+def test_an_empty_stretch_of_time_is_refused(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    with pytest.raises(UsageError, match=r"--start \+5s is not before --end \+5s") as raised:
+        replayed(tmp_path, log, start="+5s", end="+5s")
+    assert raised.value.hint == "the recordings go from 2023-11-14T22:13:20Z to 2023-11-14T22:13:29.9Z"
+    assert list(tmp_path.iterdir()) == [log]
+
+
+def test_a_replay_that_used_no_scan_fails_and_leaves_no_file(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    with pytest.raises(TimemapError, match="no scan could be used: outside_time 100"):
+        replayed(tmp_path, log, start="+60s")
+    blind = standing_log(tmp_path / "b.mcap", hole=True)
+    with pytest.raises(TimemapError, match="no scan could be used: node_not_seen 100"):
+        replayed(tmp_path, blind)
+    assert sorted(tmp_path.iterdir()) == [log, blind]
+
+
+def test_stamps_that_begin_anew_are_told(tmp_path):
+    first = standing_log(tmp_path / "a.mcap")
+    again = standing_log(tmp_path / "b.mcap", start_ns=START_NS + 1, log_later_ns=DAY_NS)
+    assert not [w for w in replayed(tmp_path, first).warnings if "begin before" in w]
+    summary = replayed(tmp_path, first, again, force=True)
+    assert [w for w in summary.warnings if "begin before" in w]
+    assert summary.scans_used == 200
+
+
+def test_a_half_life_that_the_window_cannot_keep_is_told(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    level = {
+        "name": "slow",
+        "window": 100,
+        "half_life": "1s",
+    }  # 7 places of the window each scan, and 1 can be had
+    settings = load(
+        None, {"levels": [level], "gate": {"min_travel": 0, "min_turn_deg": 0, "min_interval": "0s"}}
+    )
+    found = replayed(tmp_path, log, settings=settings).warnings
+    assert [w for w in found if "level slow forgets more slowly than its half-life says" in w]
+    assert not replayed(tmp_path, log, force=True).warnings
+
+
+def test_nodes_of_another_frame_are_refused(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    nodes = tmp_path / "nodes.timemap.mcap"
+    replay([standing_log(tmp_path / "b.mcap", world="odom")], nodes, SETTINGS)
+    with pytest.raises(UsageError, match="stand in 'odom', the poses are in 'map'"):
+        replayed(tmp_path, log, nodes=nodes)
+
+
+def test_overlapping_ends_write_the_maps_once(tmp_path):
+    logs = [standing_log(tmp_path / f"{name}.mcap", start_ns=START_NS + i) for i, name in enumerate("ab")]
+    summary = replayed(tmp_path, *logs)
+    with ResultReader(summary.result) as reader:
+        assert len(list(reader._file.messages(["/timemap/mid/map"], None))) == 1
