@@ -1,15 +1,16 @@
 """From settings to the parts of the model: the model knows no settings, and they know no model."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from timemap_cli.config import LevelSettings, Settings
 from timemap_cli.model.estimator import Estimator, estimate
 from timemap_cli.model.gate import Gate
+from timemap_cli.model.learner import Learner, Learnt
 from timemap_cli.model.levels import Level
 from timemap_cli.model.nodes import Node
-from timemap_cli.model.observer import Observer
+from timemap_cli.model.observer import Observations, Observer
 from timemap_cli.model.paper_profile import estimate_as_in_paper
 from timemap_cli.model.schedule import Period, Schedule
 from timemap_cli.model.time_map import TimeMap
@@ -27,15 +28,16 @@ def observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
     )
 
 
-def time_map(settings: Settings, nodes: Sequence[Node]) -> TimeMap:
-    """A map that has learnt nothing yet; given `nodes` are known from the start."""
-    return TimeMap(
+def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations | None], Learnt]:
+    """What learns from observations, and has learnt nothing yet; given `nodes` are known from the start."""
+    time_map = TimeMap(
         [_level(level) for level in settings.levels],
         _estimator(settings),
         angle_bins=settings.map.angle_bins,
         seed=settings.seed,
         nodes=nodes,
     )
+    return Learner(time_map, _schedule(settings)).take
 
 
 def _level(level: LevelSettings) -> Level:
@@ -48,7 +50,7 @@ def _estimator(settings: Settings) -> Estimator:
     return partial(estimate, state_width=settings.map.range_bin)
 
 
-def schedule(settings: Settings) -> Schedule:
+def _schedule(settings: Settings) -> Schedule:
     """When the nodes that changed are estimated."""
     every = settings.estimate.every
     if every.unit == "obs":

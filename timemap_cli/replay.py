@@ -2,17 +2,14 @@
 
 import json
 import time
-from collections import Counter
-from collections.abc import Generator, Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
 from timemap_cli import assembly
-from timemap_cli.ahead import ahead
 from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
@@ -20,12 +17,12 @@ from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.estimates import Estimate
+from timemap_cli.model.learner import Learnt, Round
+from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer
-from timemap_cli.model.schedule import Schedule
-from timemap_cli.model.sweeps import Sweeps
-from timemap_cli.model.time_map import TimeMap
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
+from timemap_cli.second_process import mapped
 from timemap_cli.times import format_time, parse_time
 
 _NOT_LOST = ("outside_time",)  # reasons for dropping a scan that the user asked for
@@ -75,111 +72,94 @@ def replay(
         plan = survey(recordings, settings)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        run = _Run(assembly.time_map(settings, given), result, assembly.schedule(settings))
-        start_ns, end_ns = _span_ns(plan, start, end)
-        counts = ScanCounts()
-        blocks = sweeps(recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns)
-        observed = partial(_observed, blocks, assembly.observer(settings, given), counts, recordings)
-        for step in stack.enter_context(closing(ahead(observed))):
-            run.take(step)
+        observing = _Observing(recordings, plan, assembly.observer(settings, given))
+        learning = partial(assembly.learner, settings, given)
+        writing = _Writing(result, [level.name for level in settings.levels])
+        steps = observing.steps(*_span_ns(plan, start, end))
+        for learnt in stack.enter_context(closing(mapped(learning, steps))):
+            writing.take(learnt, observing.nodes)
             if progress is not None:
-                progress(_share_done(plan, run.newest_ns), run.read.counts.read)
-        summary = _summary(output, settings, plan, run, time.perf_counter() - began)
+                progress(_share_done(plan, observing.newest_ns), observing.counts.read)
+        summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
         _require_some_use(summary)
-        metadata = _metadata(settings, recordings, run.read.digests, summary)
+        metadata = _metadata(settings, recordings, summary)
         result.finish(metadata, dump(settings), _report(plan, summary))
     return summary
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """A step of reading, and how far it has come."""
+class _Observing:
+    """Reads the recordings and turns their scans into what the nodes see; counts what becomes of every scan."""
 
-    seen: Observations | None  # None: a recording has ended
-    counts: ScanCounts
-    damage: tuple[str, ...]  # what is wrong with the recordings, as far as read
-    digests: tuple[str, ...] = ()  # SHA-256 of each recording; with the last step
-
-
-def _observed(
-    blocks: Iterable[Sweeps | EndOfRecording],
-    observer: Observer,
-    counts: ScanCounts,
-    recordings: Sequence[Recording],
-) -> Generator[_Step, None, None]:
-    for block in blocks:
-        seen = None if isinstance(block, EndOfRecording) else observer.observe(block)
-        yield _Step(seen, deepcopy(counts), _damage(recordings))
-    digests = tuple(sha256(recording.path) for recording in recordings)
-    yield _Step(None, counts, _damage(recordings), digests)  # with what was dropped after the last block
-
-
-def _damage(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    return tuple(f"{r.path}: {problem}" for r in recordings for problem in r.problems)
-
-
-class _Run:
-    """A replay under way: observations go in, and what they change goes to the result."""
-
-    def __init__(self, time_map: TimeMap, result: ResultWriter, schedule: Schedule) -> None:
-        self.time_map = time_map
+    def __init__(self, recordings: Sequence[Recording], plan: Survey, observer: Observer) -> None:
+        self.counts = ScanCounts()
         self.used = 0
-        self.dropped: Counter[str] = Counter()
-        self.read = _Step(None, ScanCounts(), ())
-        self.newest_ns: int | None = None  # stamp of the newest scan learnt
+        self.newest_ns: int | None = None
         self.began_anew = False  # stamps went back from one recording to the next
-        self._maps_are_due = False
-        self._result = result
-        self._schedule = schedule
-        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in time_map.levels}
+        self._recordings = recordings
+        self._plan = plan
+        self._observer = observer
 
-    def take(self, step: _Step) -> None:
-        self.read = step
-        if step.seen is None:
-            self._end_recording()
-        else:
-            self._replay(step.seen)
+    @property
+    def nodes(self) -> Sequence[Node]:
+        return self._observer.nodes
 
-    def _replay(self, seen: Observations) -> None:
+    @property
+    def damage(self) -> tuple[str, ...]:
+        """What is wrong with the recordings, as far as read."""
+        return tuple(f"{r.path}: {problem}" for r in self._recordings for problem in r.problems)
+
+    def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Observations | None]:
+        """Blocks of observations in stamp order; None where a recording has ended."""
+        plan, counts = self._plan, self.counts
+        blocks = sweeps(
+            self._recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns
+        )
+        for block in blocks:
+            if isinstance(block, EndOfRecording):
+                yield None
+                continue
+            seen = self._observer.observe(block)
+            self._count(seen)
+            yield seen
+
+    def _count(self, seen: Observations) -> None:
         self.used += len(seen)
-        self.dropped.update(node_not_seen=seen.node_not_seen, no_node=seen.no_node)
-        for part, estimates_are_due in self._schedule.parts(seen.stamps_ns):
-            self._learn(seen.part(part))
-            if estimates_are_due:
-                self._write_estimates()
+        self.counts.drop("node_not_seen", seen.node_not_seen)
+        self.counts.drop("no_node", seen.no_node)
+        if len(seen):
+            self.began_anew |= self.newest_ns is not None and int(seen.stamps_ns[0]) < self.newest_ns
+            self.newest_ns = int(seen.stamps_ns[-1])
 
-    def _end_recording(self) -> None:
-        """Write the maps, if anything has changed since: recordings may end together."""
-        self._write_estimates()
-        if self.newest_ns is not None and self._maps_are_due:
-            self._result.write_maps(self._latest, self.time_map.nodes, self.newest_ns)
-            self._maps_are_due = False
+
+class _Writing:
+    """Writes what was learnt into the result."""
+
+    def __init__(self, result: ResultWriter, levels: Sequence[str]) -> None:
+        self.nodes: Sequence[Node] = ()
+        self.shortfalls: Mapping[str, float] = {}
+        self._result = result
+        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in levels}
+        self._newest_ns = 0
+        self._maps_are_due = False
 
     @property
     def span_ns(self) -> int:
         """Time that the result spans so far."""
         return self._result.span_ns
 
-    def _learn(self, scans: Observations) -> None:
-        if not len(scans):
-            return
-        self.time_map.learn(scans)
-        first_ns = int(scans.stamps_ns[0])
-        if (
-            self.newest_ns is None
-        ):  # the result's time begins with the first scan, not with the first estimates
-            self._result.write_nodes(self.time_map.nodes, first_ns)
-        elif first_ns < self.newest_ns:
-            self.began_anew = True
-        self.newest_ns = int(scans.stamps_ns[-1])
+    def take(self, learnt: Learnt, all_nodes: Sequence[Node]) -> None:
+        self.shortfalls = learnt.shortfalls
+        for made in learnt.rounds:
+            self._write(made, all_nodes[: made.nodes])
+        if learnt.ends_recording and self._maps_are_due:  # recordings may end together
+            self._result.write_maps(self._latest, self.nodes, self._newest_ns)
+            self._maps_are_due = False
 
-    def _write_estimates(self) -> None:
-        if self.newest_ns is None:
-            return
-        estimates = self.time_map.estimates()
-        self._result.write_nodes(self.time_map.nodes, self.newest_ns)
-        self._result.write_estimates(estimates, self.newest_ns)
-        for found in estimates:
+    def _write(self, made: Round, nodes: Sequence[Node]) -> None:
+        self.nodes, self._newest_ns = nodes, made.newest_ns
+        self._result.write_nodes(nodes, made.newest_ns)
+        self._result.write_estimates(made.estimates, made.newest_ns)
+        for found in made.estimates:
             self._latest[found.level][found.node] = found
             self._maps_are_due = True
 
@@ -216,20 +196,23 @@ def _share_done(plan: Survey, now_ns: int | None) -> float:
     return done / max(1, sum(end_ns - begin_ns for begin_ns, end_ns in plan.spans_ns))
 
 
-def _summary(output: Path, settings: Settings, plan: Survey, run: _Run, seconds: float) -> ReplaySummary:
-    dropped = Counter(run.read.counts.dropped) + run.dropped
-    lost = sum(count for reason, count in dropped.items() if reason not in _NOT_LOST)
-    wanted = run.read.counts.read - sum(dropped[reason] for reason in _NOT_LOST)
+def _summary(
+    output: Path, settings: Settings, plan: Survey, observing: _Observing, writing: _Writing, seconds: float
+) -> ReplaySummary:
+    read, dropped = observing.counts.read, observing.counts.dropped
+    unwanted = sum(dropped.get(reason, 0) for reason in _NOT_LOST)
+    lost = sum(dropped.values()) - unwanted
+    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage)
     return ReplaySummary(
         result=output,
-        nodes=len(run.time_map.nodes),
-        levels=run.time_map.levels,
-        scans_read=run.read.counts.read,
-        scans_used=run.used,
+        nodes=len(writing.nodes),
+        levels=tuple(level.name for level in settings.levels),
+        scans_read=read,
+        scans_used=observing.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*plan.selection.warnings, *plan.problems, *run.read.damage, *_other_warnings(run)),
-        data_lost=bool(run.read.damage) or lost > settings.input.max_dropped * wanted,
+        warnings=(*warnings, *_other_warnings(observing, writing)),
+        data_lost=bool(observing.damage) or lost > settings.input.max_dropped * (read - unwanted),
     )
 
 
@@ -243,23 +226,21 @@ def _require_some_use(summary: ReplaySummary) -> None:
         )
 
 
-def _other_warnings(run: _Run) -> Generator[str, None, None]:
-    if run.began_anew:
+def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
+    if observing.began_anew:
         yield "the stamps of a recording begin before those of the one before it end: do not ask for times in between"
-    for level, shortfall in run.time_map.shortfalls.items():
+    for level, shortfall in writing.shortfalls.items():
         if shortfall > 0.1:
             yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
-    if unusable := run.read.counts.transforms_dropped:
+    if unusable := observing.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
-    if run.span_ns > VIEWERS_SPAN_NS:
-        yield f"the result spans {run.span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93"
+    if writing.span_ns > VIEWERS_SPAN_NS:
+        yield f"the result spans {writing.span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93"
 
 
-def _metadata(
-    settings: Settings, recordings: Sequence[Recording], digests: Sequence[str], summary: ReplaySummary
-) -> dict[str, str]:
+def _metadata(settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary) -> dict[str, str]:
     """What the result's metadata record says of where it comes from."""
-    inputs = [{"name": r.path.name, "sha256": digest} for r, digest in zip(recordings, digests, strict=True)]
+    inputs = [{"name": recording.path.name, "sha256": sha256(recording.path)} for recording in recordings]
     return {
         "inputs": json.dumps(inputs),
         "settings_sha256": settings_hash(settings),

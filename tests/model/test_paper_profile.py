@@ -26,12 +26,17 @@ def ring(value):
 
 
 def both(one, other):
-    joined = {
-        field.name: np.concatenate([getattr(one, field.name), getattr(other, field.name)])
-        for field in fields(Remembered)
-        if field.name != "window"
-    }
-    return replace(one, **joined)
+    def joined(name):
+        arrays = [getattr(memory, name) for memory in (one, other)]
+        if arrays[0].ndim < 3:
+            return np.concatenate(arrays)
+        empty = 0 if name == "ages" else UNSEEN
+        return np.concatenate(
+            [np.pad(a, [(0, 0), (0, 0), (0, 20 - a.shape[2])], constant_values=empty) for a in arrays]
+        )
+
+    names = [field.name for field in fields(Remembered) if field.name != "window"]
+    return replace(one, **{name: joined(name) for name in names})
 
 
 def test_a_coherent_majority_is_estimated():

@@ -18,11 +18,13 @@ def surfaces(*ranges, width=0.10, window=400):
     """Groups of ranges [m] that one angle bin was seen to have, each a list in mm."""
     scans = np.full((len(ranges), 3), NAN)
     scans[:, 1] = ranges  # no neighbours: no pairs
-    states = states_from_data(recalled(learnt(scans, window)), width)
-    known = states.known[1][: states.n_known[1]].tolist()
+    memory = recalled(learnt(scans, window))
+    states = states_from_data(memory, width)
     if 1 not in states.rows:
+        known = sorted(v for v in memory.samples[0, 1].tolist() if v < UNSEEN)
         return [known] if known else []
     (row,) = np.flatnonzero(states.rows == 1)
+    known = [v for v in states.known[row].tolist() if v < UNSEEN]
     borders = [int(border) for border in states.borders[row] if border < UNSEEN] + [UNSEEN]
     return [[v for v in known if low <= v < high] for low, high in pairwise(borders)]
 
@@ -84,7 +86,7 @@ def test_states_are_found_in_samples_and_in_both_ends_of_pairs():
     states = states_from_data(recalled(learnt(np.vstack((old, alone)), 5)), 0.1)
     (row,) = np.flatnonzero(states.rows == 1)
     assert states.borders[row].tolist() == [0, 4000, UNSEEN]
-    assert states.known[1][: states.n_known[1]].tolist() == [2000] * 10 + [4000] * 5
+    assert [v for v in states.known[row].tolist() if v < UNSEEN] == [2000] * 10 + [4000] * 5
 
 
 def test_noise_without_end_is_bounded_in_its_states():

@@ -55,8 +55,10 @@ class Groups:
             return sums
         base = totals[self.distinct]
         base[1:] -= sums[self.starts[1:] - 1]  # unsigned arithmetic may pass below 0 and comes back
-        sums += np.repeat(base, np.diff(self.starts, append=len(sums)), axis=0)
-        totals[self.nodes] = sums  # in time order: the last one stays
+        stops = np.append(self.starts[1:], len(sums))
+        for start, stop, so_far in zip(self.starts.tolist(), stops.tolist(), base, strict=True):
+            sums[start:stop] += so_far
+        totals[self.distinct] = sums[stops - 1]
         return sums
 
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from timemap_cli.model.chains import best_states
 from timemap_cli.model.memory import Remembered
-from timemap_cli.model.states import States, states_from_data
+from timemap_cli.model.states import States, ascending, states_from_data
 from timemap_cli.model.virtual_scan import Ranges
 from timemap_cli.model.vote import Forbidding, Shares, shares, votes
 
@@ -58,17 +58,14 @@ def _measured(memory: Remembered, states: States, best: Ints) -> Ranges:
     Where the samples of the state are gone, its pairs' ranges stand in for them.
     """
     low, high = states.span(np.arange(len(best)), best)
-    samples = np.sort(memory.samples.reshape(-1, memory.window), axis=1)
+    samples = ascending(memory.samples.reshape(-1, memory.samples.shape[2]))
     n_samples = memory.n_samples.reshape(-1)
     begin, end = np.zeros_like(n_samples), n_samples.copy()
     begin[states.rows], end[states.rows] = _between(samples[states.rows], low, high)
     median: Ranges = samples[np.arange(len(samples)), np.maximum(begin + end - 1, 0) // 2]
     lost = np.flatnonzero(begin[states.rows] == end[states.rows])
-    begin, end = _between(states.known[states.rows[lost]], low[lost], high[lost])
-    median[states.rows[lost]] = states.known[states.rows[lost], (begin + end - 1) // 2]
-    alone = (n_samples == 0) & (states.n_known > 0)
-    alone[states.rows] = False
-    median[alone] = states.known[alone, (states.n_known[alone] - 1) // 2]
+    begin, end = _between(states.known[lost], low[lost], high[lost])
+    median[states.rows[lost]] = states.known[lost, (begin + end - 1) // 2]
     return median
 
 

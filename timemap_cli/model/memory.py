@@ -24,12 +24,12 @@ _SPARE_ROWS = 8  # room made at a time
 
 @dataclass(frozen=True, slots=True)
 class Remembered:
-    """The memory of m nodes as the estimate reads it; empty places are UNSEEN."""
+    """The memory of m nodes as the estimate reads it: as deep as the fullest angle bin; empty places are UNSEEN."""
 
-    samples: Ranges  # (m, angle_bins, window) [mm]
-    ages: Counts  # (m, angle_bins, window) scans taken since, that did not see the angle bin
-    left: Ranges  # (m, angle_bins, window) [mm] a pair's range in this angle bin ...
-    right: Ranges  # (m, angle_bins, window) [mm] ... and in the next
+    samples: Ranges  # (m, angle_bins, most samples) [mm]
+    ages: Counts  # (m, angle_bins, most samples) scans taken since, that did not see the angle bin
+    left: Ranges  # (m, angle_bins, most pairs) [mm] a pair's range in this angle bin ...
+    right: Ranges  # (m, angle_bins, most pairs) [mm] ... and in the next
     n_samples: Ints  # (m, angle_bins)
     n_pairs: Ints  # (m, angle_bins)
     taken: Ints  # (m,) scans that the memory took
@@ -142,13 +142,15 @@ class Memory:
         """Copy of the memory of m different nodes."""
         self._make_room(nodes)
         rows = self._row[nodes]
+        n_samples, n_pairs = self._n_samples[rows].astype(np.int64), self._n_pairs[rows].astype(np.int64)
+        samples, pairs = (slice(max(1, int(count.max(initial=0)))) for count in (n_samples, n_pairs))
         return Remembered(
-            self._samples[rows],
-            self._missed[rows][:, :, None] - self._missed_then[rows],
-            self._left[rows],
-            self._right[rows],
-            self._n_samples[rows].astype(np.int64),
-            self._n_pairs[rows].astype(np.int64),
+            self._samples[rows, :, samples],
+            self._missed[rows][:, :, None] - self._missed_then[rows, :, samples],
+            self._left[rows, :, pairs],
+            self._right[rows, :, pairs],
+            n_samples,
+            n_pairs,
             self._taken[rows],
             self._stamps_ns[rows],
             self.level.window,

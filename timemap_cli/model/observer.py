@@ -55,6 +55,11 @@ class Observer:
         self._angle_bins = angle_bins
         self._radius = radius
 
+    @property
+    def nodes(self) -> Sequence[Node]:
+        """All nodes so far, in the order of their numbers."""
+        return self._placement.nodes
+
     def observe(self, sweeps: Sweeps) -> Observations:
         """Observations from a block of scans; blocks must come in stamp order."""
         places = _places(sweeps)

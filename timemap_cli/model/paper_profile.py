@@ -9,7 +9,7 @@ from timemap_cli.model.chains import best_states
 from timemap_cli.model.closed_path import IMPOSSIBLE, SCALE
 from timemap_cli.model.estimator import Estimated, assembled
 from timemap_cli.model.memory import Remembered
-from timemap_cli.model.states import States, borders_at, known_ranges
+from timemap_cli.model.states import States, borders_at, how_many_known, known_ranges
 from timemap_cli.model.virtual_scan import CLEAR, UNSEEN
 from timemap_cli.model.vote import neighbouring_rows, pair_counts, shares
 
@@ -38,13 +38,13 @@ def estimate_as_in_paper(memory: Remembered, range_bin: float) -> Estimated:
 
 def states_from_range_bins(memory: Remembered, range_bin: float) -> States:
     """Every angle bin of which anything is known is a row; its states are the slices of range with anything in them."""
-    known, n_known = known_ranges(memory)
+    rows = np.flatnonzero(how_many_known(memory))
+    known = known_ranges(memory, rows)
     width = round(range_bin * 1000)
     cell = np.where(known < CLEAR, known // width, known).astype(np.int64)
     new = cell[:, 1:] != cell[:, :-1]
     new &= known[:, 1:] < UNSEEN
-    rows = np.flatnonzero(n_known)
-    return States(rows, borders_at(known[rows], new[rows]), known, n_known)
+    return States(rows, borders_at(known, new), known)
 
 
 class _EdgeWeights:

@@ -46,7 +46,7 @@ class Placement:
     def _nearest(self, places: Floats) -> tuple[Ints, npt.NDArray[np.bool_]]:
         if not self.nodes:
             return np.zeros(len(places), np.int64), np.zeros(len(places), np.bool_)
-        difference = places[:, None, :] - self.centres
-        squared = difference[:, :, 0] ** 2 + difference[:, :, 1] ** 2
+        dx, dy = (places[:, None, axis] - self.centres[:, axis] for axis in (0, 1))
+        squared = dx * dx + dy * dy
         nearest = squared.argmin(axis=1)
         return nearest, squared[np.arange(len(places)), nearest] <= self._spacing**2

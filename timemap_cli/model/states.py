@@ -32,8 +32,7 @@ class States:
 
     rows: Ints  # (rows,) node * angle_bins + angle bin, ascending
     borders: Ranges  # (rows, states + 1) [mm] ascending, the first 0; UNSEEN from the last one on
-    known: Ranges  # (m * angle_bins, 3 * window) [mm] all ranges known in any angle bin, ascending
-    n_known: Ints  # (m * angle_bins,) how many
+    known: Ranges  # (rows, most) [mm] all ranges known of these angle bins, ascending, then UNSEEN
 
     @property
     def size(self) -> int:
@@ -63,13 +62,28 @@ class States:
         return label
 
 
-def known_ranges(memory: Remembered) -> tuple[Ranges, Ints]:
-    """All ranges (m * angle_bins, 3 * window) [mm] that are known of an angle bin, ascending, and how many."""
-    known = np.concatenate((memory.samples, memory.left, np.roll(memory.right, 1, axis=1)), axis=2)
-    known = known.reshape(-1, known.shape[2])
-    known.sort(axis=1)
-    count = memory.n_samples + memory.n_pairs + np.roll(memory.n_pairs, 1, axis=1)
-    return known, count.reshape(-1)
+def known_ranges(memory: Remembered, rows: Ints) -> Ranges:
+    """All ranges (rows, most) [mm] that are known of these angle bins, ascending, then UNSEEN.
+
+    They are its samples, the left ends of its pairs, and the right ends of the pairs of the angle bin before.
+    """
+    angle_bins = memory.samples.shape[1]
+    before = rows - 1 + angle_bins * (rows % angle_bins == 0)
+    stores, at = (memory.samples, memory.left, memory.right), (rows, rows, before)
+    parts = [store.reshape(-1, store.shape[2])[where] for store, where in zip(stores, at, strict=True)]
+    return ascending(np.concatenate(parts, axis=1))
+
+
+def how_many_known(memory: Remembered) -> Ints:
+    """Number (m * angle_bins,) of ranges that are known of each angle bin."""
+    return (memory.n_samples + memory.n_pairs + np.roll(memory.n_pairs, 1, axis=1)).reshape(-1)
+
+
+def ascending(ranges: Ranges) -> Ranges:
+    """Rows of ranges, each sorted. As 32-bit numbers: few processors sort 16-bit ones by more than one at a time."""
+    wide = ranges.astype(np.uint32)
+    wide.sort(axis=1)
+    return wide.astype(np.uint16)
 
 
 def states_from_data(memory: Remembered, width: float) -> States:
@@ -78,32 +92,36 @@ def states_from_data(memory: Remembered, width: float) -> States:
     Ranges farther apart than width / 2 [m] are different surfaces. A group wider than 2 * width is no surface: its
     densest window of one width is cut out, and again from the rests. Beyond STRETCH_FROM all widths grow with range.
     """
-    known, n_known = known_ranges(memory)
     size = round(width / _UNIT)
-    candidates = _may_split(known, n_known, size)
-    place = _stretched().take(known[candidates])
+    rows = _spread_out(memory, size)
+    known, n_known = known_ranges(memory, rows), how_many_known(memory)[rows]
+    place = _stretched().take(known)
     cut = place[:, 1:] - place[:, :-1] > size // 2
-    cut &= known[candidates, 1:] < UNSEEN
-    _cut_wide_groups(cut, place, n_known[candidates], size)
+    cut &= known[:, 1:] < UNSEEN
+    _cut_wide_groups(cut, place, n_known, size)
     split = np.flatnonzero(cut.any(axis=1))
-    rows = candidates[split]
-    return States(rows, _borders(known[rows], cut[split], place[split]), known, n_known)
+    return States(rows[split], _borders(known[split], cut[split], place[split]), known[split])
 
 
-def _may_split(known: Ranges, n_known: Ints, size: int) -> Ints:
-    """Angle bins that may hold more than one surface; most do not, and this tells it without the stretched scale.
+def _spread_out(memory: Remembered, size: int) -> Ints:
+    """Angle bins whose known ranges may lie so far apart that there is a cut; most do not, and need no sorting.
 
-    That scale grows ever slower with range, so two ranges are no farther apart on it than its slope at the nearest
-    range makes them.
+    The stretched scale grows ever slower with range, so two ranges are no farther apart on it than its slope at the
+    nearest range makes them.
     """
-    last = np.maximum(n_known, 1) - 1
-    nearest, farthest = known[:, 0], known[np.arange(len(known)), last]
+    stores = (memory.samples, memory.left, np.roll(memory.right, 1, axis=1))
+    extremes = [_extremes(store.reshape(-1, store.shape[2])) for store in stores]
+    nearest = np.minimum.reduce([near for near, _ in extremes])
+    beyond = np.maximum.reduce([beyond for _, beyond in extremes])
+    apart = beyond - np.minimum(nearest, beyond)
     widening = np.maximum(1, nearest / (STRETCH_FROM * 1000))
-    gaps = known[:, 1:] - known[:, :-1]
-    unfilled = np.flatnonzero(last < gaps.shape[1])
-    gaps[unfilled, last[unfilled]] = 0  # from the last range to the first empty place
-    split = gaps.max(axis=1) > widening * (size // 2 - 1) * _UNIT * 1000
-    return np.flatnonzero(split | (farthest - nearest > widening * (2 * size - 1) * _UNIT * 1000))
+    return np.flatnonzero(apart > widening * (size // 2 - 1) * _UNIT * 1000)
+
+
+def _extremes(ranges: Ranges) -> tuple[Ranges, Ranges]:
+    """The nearest of each row (rows,) [mm], and one more than the farthest; UNSEEN does not count."""
+    columns = np.ascontiguousarray(ranges.T)  # NumPy is slow at short rows
+    return columns.min(axis=0), (columns + np.uint16(1)).max(axis=0)  # UNSEEN + 1 is 0
 
 
 def _borders(known: Ranges, cut: Bools, place: Stretched) -> Ranges:

@@ -33,11 +33,11 @@ class Shares:
 
 def shares(memory: Remembered, states: States) -> Shares:
     """Shares of the window, each sample weighted by what the level would have forgotten had it looked."""
-    angle_bins, window = memory.samples.shape[1:]
-    weight = _freshness(window).take(memory.ages, mode="clip").reshape(-1, window)
-    samples = memory.samples.reshape(-1, window)
+    angle_bins, depth = memory.samples.shape[1:]
+    weight = _freshness(memory.window).take(memory.ages, mode="clip").reshape(-1, depth)
+    samples = memory.samples.reshape(-1, depth)
     weight *= samples < UNSEEN
-    full = np.maximum(1, np.minimum(memory.taken, window)) * float(SCALE)
+    full = np.maximum(1, np.minimum(memory.taken, memory.window)) * float(SCALE)
     full = np.repeat(full, angle_bins)
     known = weight.sum(axis=1, dtype=np.int32) / full
     rows = np.arange(len(states.rows))
@@ -96,8 +96,9 @@ def neighbouring_rows(rows: Ints, angle_bins: int) -> Ints:
 
 
 def pairs_of(memory: Remembered, rows: Ints) -> tuple[Ranges, Ranges]:
-    """Pairs (k, window) of these angle bins: the range there, and in the next."""
-    return memory.left.reshape(-1, memory.window)[rows], memory.right.reshape(-1, memory.window)[rows]
+    """Pairs (k, most pairs) of these angle bins: the range there, and in the next."""
+    depth = memory.left.shape[2]
+    return memory.left.reshape(-1, depth)[rows], memory.right.reshape(-1, depth)[rows]
 
 
 def pair_counts(memory: Remembered, states: States, edges: Ints) -> Ints:
