@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from timemap_cli.changes.tracker import Tracker
 from timemap_cli.config import LevelSettings, Settings
 from timemap_cli.model.estimator import Estimator, estimate
 from timemap_cli.model.gate import Gate
@@ -38,6 +39,11 @@ def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations
         nodes=nodes,
     )
     return Learner(time_map, _schedule(settings)).take
+
+
+def tracker(settings: Settings) -> Tracker:
+    """What follows changes, and knows of none yet."""
+    return Tracker([level.name for level in settings.levels], settings.map.radius)
 
 
 def _level(level: LevelSettings) -> Level:

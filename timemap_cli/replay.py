@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from timemap_cli import assembly
+from timemap_cli.changes.tracker import Tracker
 from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
@@ -20,6 +21,7 @@ from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.learner import Learnt, Round
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer
+from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
 from timemap_cli.second_process import mapped
@@ -74,7 +76,7 @@ def replay(
         result = stack.enter_context(_result(output, settings, plan, force=force))
         observing = _Observing(recordings, plan, assembly.observer(settings, given))
         learning = partial(assembly.learner, settings, given)
-        writing = _Writing(result, [level.name for level in settings.levels])
+        writing = _Writing(result, assembly.tracker(settings))
         steps = observing.steps(*_span_ns(plan, start, end))
         for learnt in stack.enter_context(closing(mapped(learning, steps))):
             writing.take(learnt, observing.nodes)
@@ -83,7 +85,8 @@ def replay(
         summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
         _require_some_use(summary)
         metadata = _metadata(settings, recordings, summary)
-        result.finish(metadata, dump(settings), _report(plan, summary))
+        changes = changes_document(writing.tracker.events, observing.newest_ns)
+        result.finish(metadata, dump(settings), _report(plan, summary), changes)
     return summary
 
 
@@ -132,13 +135,14 @@ class _Observing:
 
 
 class _Writing:
-    """Writes what was learnt into the result."""
+    """Writes what was learnt into the result, and follows the changes in it."""
 
-    def __init__(self, result: ResultWriter, levels: Sequence[str]) -> None:
+    def __init__(self, result: ResultWriter, tracker: Tracker) -> None:
+        self.tracker = tracker
         self.nodes: Sequence[Node] = ()
         self.shortfalls: Mapping[str, float] = {}
         self._result = result
-        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in levels}
+        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in tracker.levels}
         self._newest_ns = 0
         self._maps_are_due = False
 
@@ -162,6 +166,7 @@ class _Writing:
         for found in made.estimates:
             self._latest[found.level][found.node] = found
             self._maps_are_due = True
+        self._result.write_changes(self.tracker.update(nodes, self._latest, made.estimates), made.newest_ns)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:

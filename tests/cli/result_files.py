@@ -14,6 +14,8 @@ START = 1_700_000_000 * SECOND
 NODE = Node(1.0, 2.0)
 LEVELS = ("short", "mid", "long")
 
+NO_CHANGES = {"schema": "timemap.changes/1", "events": [], "summary": {}}
+
 
 def room(level, stamp_ns, *, box: bool, node: int = 0) -> Estimate:
     """What the level holds; the box stands to the left (+y) of the node, 30 degrees wide."""
@@ -35,7 +37,7 @@ def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", r
                 writer.write_estimates(
                     [room(lv, stamp_ns, box=seen[lv], node=node) for lv in levels], stamp_ns
                 )
-        writer.finish({"nodes": str(len(nodes))}, "seed: 0\n", {})
+        writer.finish({"nodes": str(len(nodes))}, "seed: 0\n", {}, NO_CHANGES)
     return path
 
 

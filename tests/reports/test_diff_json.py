@@ -3,6 +3,7 @@
 import json
 from math import inf, nan
 
+import numpy as np
 import pytest
 
 from tests.reports.differences import (
@@ -18,6 +19,8 @@ from tests.reports.differences import (
 )
 from timemap_cli.changes.difference import Change, Difference, Kind, Sector
 from timemap_cli.reports.diff_json import diff_json
+
+NO_POINTS = np.zeros((0, 2))
 
 
 def document(told: Difference):
@@ -84,7 +87,9 @@ def test_bearings_are_degrees_whatever_the_resolution():
 
 
 def test_sector_up_to_the_end_of_the_circle_stops_at_360():
-    change = Change(Kind.VANISHED, 1.0, 0.0, (0.9, 0.0, 1.1, 0.0), 0.5, (Sector(0, 350, 360, 2.0, 3.0),))
+    change = Change(
+        Kind.VANISHED, 1.0, 0.0, (0.9, 0.0, 1.1, 0.0), 0.5, (Sector(0, 350, 360, 2.0, 3.0),), NO_POINTS
+    )
     assert document(difference(change))["changes"][0]["sectors"][0]["stop_deg"] == 360.0
 
 
@@ -95,6 +100,6 @@ def test_nothing_compared_is_a_document_too():
 
 
 def test_not_a_number_is_refused_rather_than_written():
-    broken = Change(Kind.VANISHED, nan, 0.0, (0.0, 0.0, 0.0, inf), 0.5, ())
+    broken = Change(Kind.VANISHED, nan, 0.0, (0.0, 0.0, 0.0, inf), 0.5, (), NO_POINTS)
     with pytest.raises(ValueError, match="not JSON compliant"):
         diff_json(difference(broken), NODES, OLD, NEW)

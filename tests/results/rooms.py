@@ -17,6 +17,7 @@ WIDTH, HEIGHT = 6.0, 4.0  # [m] the room's walls: x = 0, x = 6, y = 0, y = 4; an
 NODES = (Node(1.5, 2.0), Node(3.0, 1.25), Node(4.5, 2.0))
 CONFIG = "seed: 0  # Größe\n"
 REPORT = {"scans": {"read": 12}, "note": "größer"}
+CHANGES = {"schema": "timemap.changes/1", "events": [], "summary": {"events": 0}}
 
 
 def room_ranges(node: Node, bins: int = 360) -> np.ndarray:
@@ -76,5 +77,5 @@ def write_room(path: Path) -> dict[tuple[str, int], list[Estimate]]:
                 newest[one.level][one.node] = one
             if step in (2, 4):
                 writer.write_maps(newest, NODES[: len(newest["short"])], now_ns)
-        writer.finish({"seed": "0", "inputs": "a.bag"}, CONFIG, REPORT)
+        writer.finish({"seed": "0", "inputs": "a.bag"}, CONFIG, REPORT, CHANGES)
     return told

@@ -5,7 +5,7 @@ import pytest
 from mcap.writer import CompressionType, Writer
 
 from tests.conftest import shared_data
-from tests.results.rooms import CONFIG, LEVELS, NODES, REPORT, SECOND, T0, write_room
+from tests.results.rooms import CHANGES, CONFIG, LEVELS, NODES, REPORT, SECOND, T0, write_room
 from timemap_cli.errors import ExitCode, TimemapError, UsageError
 from timemap_cli.results.reader import ResultReader
 
@@ -29,7 +29,7 @@ def test_what_describes_the_result_comes_back(room):
         assert reader.levels == LEVELS
         assert (reader.angle_bins, reader.radius, reader.map_frame) == (360, 5.0, "map")
         assert (reader.metadata["seed"], reader.metadata["inputs"]) == ("0", "a.bag")
-        assert (reader.config, reader.report) == (CONFIG, REPORT)
+        assert (reader.config, reader.report, reader.changes) == (CONFIG, REPORT, CHANGES)
         assert (reader.start_ns, reader.end_ns) == (T0, T0 + 40 * SECOND)
 
 

@@ -8,6 +8,7 @@ from mcap.records import ChunkIndex
 from mcap.stream_reader import StreamReader
 
 from tests.results.rooms import (
+    CHANGES,
     CONFIG,
     LEVELS,
     NODES,
@@ -73,7 +74,8 @@ def test_file_is_chunked_compressed_and_indexed(result):
     assert {c.compression for c in found.chunk_indexes} == {"zstd"}
     assert all(c.message_index_offsets for c in found.chunk_indexes)
     assert found.statistics.message_count == len(messages(result))
-    assert [a.name for a in found.attachment_indexes] == ["timemap/config.yaml", "timemap/report.json"]
+    names = ["timemap/config.yaml", "timemap/report.json", "timemap/changes.json"]
+    assert [a.name for a in found.attachment_indexes] == names
     assert [m.name for m in found.metadata_indexes] == ["timemap"]
 
 
@@ -110,9 +112,11 @@ def test_latched_topics_say_so(result):
 
 def test_attachments_hold_settings_and_report_at_the_time_of_the_last_message(result):
     with result.open("rb") as stream:
-        config, report = make_reader(stream).iter_attachments()
-    assert (config.data.decode(), json.loads(report.data)) == (CONFIG, REPORT)
-    assert {config.create_time, config.log_time, report.create_time, report.log_time} == {T0 + 40 * SECOND}
+        config, report, changes = make_reader(stream).iter_attachments()
+    assert config.data.decode() == CONFIG
+    assert [json.loads(one.data) for one in (report, changes)] == [REPORT, CHANGES]
+    times = {time for one in (config, report, changes) for time in (one.create_time, one.log_time)}
+    assert times == {T0 + 40 * SECOND}
 
 
 def test_frames_are_written_before_the_first_estimate_of_a_new_node(result):
@@ -139,7 +143,7 @@ def test_estimates_older_than_the_last_message_keep_their_stamp_and_the_order(tm
         writer.write_nodes(NODES, T0)
         writer.write_estimates([estimate(0, "mid", T0 + 10)], T0 + 10)
         writer.write_estimates([estimate(1, "mid", T0 + 4)], T0 + 10)
-        writer.finish({}, "", {})
+        writer.finish({}, "", {}, {})
     assert [m.log_time - T0 for t, m in messages(path) if t.endswith("scan")] == [10, 10]
     with ResultReader(path) as reader:
         assert [e.stamp_ns - T0 for e in reader.estimates("mid").values()] == [10, 4]
@@ -150,7 +154,7 @@ def test_maps_of_a_level_that_knows_nothing_are_empty(tmp_path):
     with new_writer(path) as writer:
         writer.write_nodes(NODES, T0)
         writer.write_maps({"long": {}}, NODES, T0)
-        writer.finish({}, "", {})
+        writer.finish({}, "", {}, {})
     assert [t for t, _ in messages(path)] == ["/tf_static", "/timemap/long/points", "/timemap/long/map"]
 
 
@@ -162,7 +166,7 @@ def test_radius_that_float32_cannot_hold_still_contains_its_ranges(tmp_path):
     with new_writer(path, radius=radius) as writer:
         writer.write_nodes(NODES, T0)
         writer.write_estimates([one], T0)
-        writer.finish({}, "", {})
+        writer.finish({}, "", {}, {})
     with ResultReader(path) as reader:
         assert reader.radius == radius
 
@@ -208,7 +212,7 @@ def test_leaving_without_finish_leaves_nothing(tmp_path):
 
 def test_a_result_without_any_message_is_an_error(tmp_path):
     with pytest.raises(TimemapError, match="nothing to write"), new_writer(tmp_path / "a.mcap") as writer:
-        writer.finish({}, "", {})
+        writer.finish({}, "", {}, {})
     assert list(tmp_path.iterdir()) == []
 
 
@@ -224,7 +228,7 @@ def test_report_with_a_nan_is_refused(tmp_path):
         writer.write_nodes(NODES, T0)
         writer.write_estimates(all_levels(0, T0, 0), T0)
         with pytest.raises(ValueError, match="JSON"):
-            writer.finish({}, "", {"share": float("nan")})
+            writer.finish({}, "", {"share": float("nan")}, {})
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,6 +1,7 @@
 """What differs between two estimates of the same nodes."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -95,7 +96,8 @@ class _Teller:
         x_min, y_min = thing.points.min(axis=0).tolist()
         x_max, y_max = thing.points.max(axis=0).tolist()
         sectors = sorted((self._sector(run) for run in thing.runs), key=lambda s: (s.node, s.start_bin))
-        return Change(kind, x, y, (x_min, y_min, x_max, y_max), self._support(thing.runs), tuple(sectors))
+        bounds = (x_min, y_min, x_max, y_max)
+        return Change(kind, x, y, bounds, self._support(thing.runs), tuple(sectors), thing.points)
 
     def moved(self, gone: Thing, come: Thing) -> Change:
         """A thing that left one place for another."""
@@ -103,7 +105,13 @@ class _Teller:
         there = self.one(Kind.MOVED, gone)
         sectors = sorted(here.sectors + there.sectors, key=lambda s: (s.node, s.start_bin))
         support = self._support(gone.runs + come.runs)
-        return Change(Kind.MOVED, here.x, here.y, here.bounds, support, tuple(sectors), (there.x, there.y))
+        return replace(
+            here,
+            support=support,
+            sectors=tuple(sectors),
+            moved_from=(there.x, there.y),
+            points_before=there.points,
+        )
 
     def _sector(self, run: Run) -> Sector:
         return Sector(

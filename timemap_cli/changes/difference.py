@@ -1,8 +1,10 @@
 """What a comparison of two estimates says."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from math import hypot
+
+from timemap_cli.changes.rings import Floats
 
 
 class Kind(Enum):
@@ -47,7 +49,11 @@ class Change:
     bounds: tuple[float, float, float, float]  # [m] x_min, y_min, x_max, y_max
     support: float  # 0..1, mean over the changed bins of the weaker of both sides' share of what is known
     sectors: tuple[Sector, ...]  # by node, then start_bin; of a moved thing both places
+    points: Floats = field(compare=False, repr=False)  # (n, 2) [m] the surface where it stands, or stood
     moved_from: tuple[float, float] | None = None  # [m] where a moved thing stood
+    points_before: Floats | None = field(
+        default=None, compare=False, repr=False
+    )  # (n, 2) [m] of a moved thing
 
     @property
     def nodes(self) -> tuple[int, ...]:

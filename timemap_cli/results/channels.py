@@ -8,6 +8,9 @@ TF_STATIC = "/tf_static"
 METADATA = "timemap"
 CONFIG = "timemap/config.yaml"
 REPORT = "timemap/report.json"
+CHANGES = "timemap/changes.json"
+CHANGE_TOPIC = "/timemap/changes"
+MARKER_TOPIC = "/timemap/changes/markers"
 FORMAT = "timemap.result/1"
 
 

@@ -10,6 +10,8 @@ POINT_CLOUD = "sensor_msgs/msg/PointCloud2"
 OCCUPANCY_GRID = "nav_msgs/msg/OccupancyGrid"
 TF_MESSAGE = "tf2_msgs/msg/TFMessage"
 STATUS = "timemap_msgs/msg/Status"
+CHANGE = "timemap_msgs/msg/Change"
+MARKERS = "visualization_msgs/msg/MarkerArray"
 
 _SEPARATOR = "=" * 80
 
@@ -70,6 +72,70 @@ _FIELDS = {
         "geometry_msgs/Pose origin\n"
     ),
     OCCUPANCY_GRID: "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n",
+    "builtin_interfaces/msg/Duration": "int32 sec\nuint32 nanosec\n",
+    "std_msgs/msg/ColorRGBA": "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n",
+    "sensor_msgs/msg/CompressedImage": "std_msgs/Header header\nstring format\nuint8[] data\n",
+    "visualization_msgs/msg/UVCoordinate": "float32 u\nfloat32 v\n",
+    "visualization_msgs/msg/MeshFile": "string filename\nuint8[] data\n",
+    "visualization_msgs/msg/Marker": (
+        "int32 ARROW=0\n"
+        "int32 CUBE=1\n"
+        "int32 SPHERE=2\n"
+        "int32 CYLINDER=3\n"
+        "int32 LINE_STRIP=4\n"
+        "int32 LINE_LIST=5\n"
+        "int32 CUBE_LIST=6\n"
+        "int32 SPHERE_LIST=7\n"
+        "int32 POINTS=8\n"
+        "int32 TEXT_VIEW_FACING=9\n"
+        "int32 MESH_RESOURCE=10\n"
+        "int32 TRIANGLE_LIST=11\n"
+        "int32 ADD=0\n"
+        "int32 MODIFY=0\n"
+        "int32 DELETE=2\n"
+        "int32 DELETEALL=3\n"
+        "std_msgs/Header header\n"
+        "string ns\n"
+        "int32 id\n"
+        "int32 type\n"
+        "int32 action\n"
+        "geometry_msgs/Pose pose\n"
+        "geometry_msgs/Vector3 scale\n"
+        "std_msgs/ColorRGBA color\n"
+        "builtin_interfaces/Duration lifetime\n"
+        "bool frame_locked\n"
+        "geometry_msgs/Point[] points\n"
+        "std_msgs/ColorRGBA[] colors\n"
+        "string texture_resource\n"
+        "sensor_msgs/CompressedImage texture\n"
+        "visualization_msgs/UVCoordinate[] uv_coordinates\n"
+        "string text\n"
+        "string mesh_resource\n"
+        "visualization_msgs/MeshFile mesh_file\n"
+        "bool mesh_use_embedded_materials\n"
+    ),
+    MARKERS: "visualization_msgs/Marker[] markers\n",
+    CHANGE: (
+        "# Something that was found out about a change event; the stamp says when. All times are of scans.\n"
+        "std_msgs/Header header\n"
+        "uint32 id                                  # of the event, the same for all its messages\n"
+        "string turn                                # seen, adopted, closed, reopened, dropped\n"
+        "string level                               # the one that adopted it, else empty\n"
+        "string kind                                # appeared, vanished, moved\n"
+        "geometry_msgs/Point[] outline              # of where it stands, or stood\n"
+        "geometry_msgs/Point[] moved_from           # one point where it moved, else none\n"
+        "float32 support                            # 0..1\n"
+        "builtin_interfaces/Time first_seen\n"
+        "builtin_interfaces/Time last_seen\n"
+        "builtin_interfaces/Time looked             # newest scan that could tell\n"
+        "string[] adopted_levels                    # levels that have adopted it ...\n"
+        "builtin_interfaces/Time[] adopted          # ... and when\n"
+        "uint32[] nodes                             # that show it\n"
+        "uint32[] against                           # that show it undone\n"
+        "builtin_interfaces/Time[] since            # of each episode\n"
+        "builtin_interfaces/Time[] until            # one less than since while it holds\n"
+        "float32 share_held                         # of the looks, 0..1\n"
+    ),
     STATUS: (
         "# What a level knows about each angle bin, beside the scan of the same node and stamp.\n"
         "# The share of the level's window that is known: support + 1 - plausibility.\n"

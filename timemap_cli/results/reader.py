@@ -65,6 +65,12 @@ class ResultReader:
         report: dict[str, Any] = json.loads(self._file.attachment(channels.REPORT))
         return report
 
+    @property
+    def changes(self) -> dict[str, Any]:
+        """The change events of the replay, schema timemap.changes/1."""
+        changes: dict[str, Any] = json.loads(self._file.attachment(channels.CHANGES))
+        return changes
+
     def estimates(self, level: str, until_ns: int | None = None) -> dict[int, Estimate]:
         """Each node's newest estimate of a level, not later than a time; nodes in order of their number.
 

@@ -10,12 +10,14 @@ import numpy as np
 from mcap.writer import CompressionType, IndexType, Writer
 
 from timemap_cli import __version__
+from timemap_cli.changes.events import Transition
 from timemap_cli.errors import TimemapError
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.level_map import merged_points, occupancy_grid
 from timemap_cli.model.nodes import Node
 from timemap_cli.results import channels, definitions
 from timemap_cli.results.atomic_file import AtomicFile
+from timemap_cli.results.change_messages import pack_change, pack_markers
 from timemap_cli.results.channels import LevelTopic
 from timemap_cli.results.layouts import pack_scans, pack_statuses
 from timemap_cli.results.messages import NodeFrames, pack_grid, pack_points
@@ -114,7 +116,24 @@ class ResultWriter:
             grid = pack_grid(occupancy_grid(nodes, estimates, self._radius), now_ns, self._map_frame)
             self._add_of_level(LevelTopic.MAP, level, grid, now_ns)
 
-    def finish(self, metadata: Mapping[str, str], config_yaml: str, report: Mapping[str, Any]) -> None:
+    def write_changes(self, transitions: Sequence[Transition], stamp_ns: int) -> None:
+        """Write what was found out about change events when the newest scan replayed was `stamp_ns`."""
+        if not transitions:
+            return
+        now_ns = self._advance(stamp_ns)
+        for transition in transitions:
+            message = pack_change(transition, now_ns, self._map_frame)
+            self._add(channels.CHANGE_TOPIC, definitions.CHANGE, message, now_ns, latched=False)
+        markers = pack_markers(transitions, now_ns, self._map_frame)
+        self._add(channels.MARKER_TOPIC, definitions.MARKERS, markers, now_ns, latched=False)
+
+    def finish(
+        self,
+        metadata: Mapping[str, str],
+        config_yaml: str,
+        report: Mapping[str, Any],
+        changes: Mapping[str, Any],
+    ) -> None:
         """Write what describes the whole, and put the file in its place.
 
         Raises TimemapError if nothing was written: an empty result helps nobody.
@@ -122,8 +141,9 @@ class ResultWriter:
         if self._first_ns is None:  # not one message
             raise TimemapError("there is nothing to write: no scan could be used")
         self._attach(channels.CONFIG, "application/yaml", config_yaml)
-        text = json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)
-        self._attach(channels.REPORT, "application/json", text + "\n")
+        for name, document in ((channels.REPORT, report), (channels.CHANGES, changes)):
+            text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+            self._attach(name, "application/json", text + "\n")
         self._mcap.add_metadata(channels.METADATA, {**metadata, **self._own_metadata()})
         self._mcap.finish()  # type: ignore[no-untyped-call]
         self._file.commit()

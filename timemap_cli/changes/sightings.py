@@ -1,0 +1,53 @@
+"""What each node says of a surface: it stands there, one sees past it, or the node cannot tell."""
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.changes.bins import seen_past, step
+from timemap_cli.changes.rings import Bools, Floats, Ints, Places, Rings
+from timemap_cli.changes.rules import Rules
+
+STANDS, UNTOLD, GONE = 1, 0, -1
+Words = npt.NDArray[np.int8]
+
+_CAN_TELL = 0.3  # of the points: a thing has sides that a node does not see
+_AGREE = 2 / 3  # of those it can tell of: less is a thing half seen, and no word
+
+
+def words(points: Floats, side: Rings, places: Places, rules: Rules) -> Words:
+    """Each row's word (rows,) on the surface `points` (n, 2) [m, map frame]: STANDS, GONE or UNTOLD."""
+    rows, bins, ranges = towards(points, places)
+    seen, by = side.ranges[rows, bins], step(ranges, rules)
+    firm = side.firm(rules, rules.min_samples)[rows, bins]
+    stand = (firm & (np.abs(seen - ranges) <= by)).sum(axis=1)
+    gone = (firm & seen_past(ranges, seen, places.radius, rules)).sum(axis=1)
+    told = stand + gone
+    can_tell = told >= np.maximum(_CAN_TELL * len(points), 1)
+    said = np.zeros(len(side.ranges), np.int8)
+    said[rows[:, 0]] = np.where(
+        can_tell & (stand >= _AGREE * told),
+        STANDS,
+        np.where(can_tell & (gone >= _AGREE * told), GONE, UNTOLD),
+    )
+    return said
+
+
+def towards(points: Floats, places: Places) -> tuple[Ints, Ints, Floats]:
+    """Rows (k, 1) of the nodes within reach of some point, and each point's angle bin and range from there (k, n)."""
+    offset = points[None, :, :] - places.centres[:, None, :]
+    near = np.hypot(offset[..., 0], offset[..., 1]).min(axis=1) <= places.radius
+    rows, offset = np.flatnonzero(near)[:, None], offset[near]
+    bearings = np.arctan2(offset[..., 1], offset[..., 0])
+    bins = np.floor(bearings / places.bin_rad).astype(np.int64) % places.angle_bins
+    return rows, bins, np.hypot(offset[..., 0], offset[..., 1])
+
+
+def look(
+    side: Rings, rows: Ints, bins: Ints, ranges: Floats, places: Places, rules: Rules
+) -> tuple[Bools, Bools]:
+    """Whether a side shows surfaces at `ranges`, within the edge tolerance, and whether it sees past them."""
+    by = step(ranges, rules)
+    shown = np.zeros(ranges.shape, dtype=np.bool_)
+    for shift in range(-places.edge_bins(rules), places.edge_bins(rules) + 1):
+        shown |= np.abs(side.ranges[rows, (bins + shift) % places.angle_bins] - ranges) <= by
+    return shown, seen_past(ranges, side.ranges[rows, bins], places.radius, rules) & ~shown

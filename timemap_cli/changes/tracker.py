@@ -1,0 +1,115 @@
+"""Follows changes over time: found where a faster level differs from the slowest, then watched at their places.
+
+A level that differs from what the slowest held a round ago gives a candidate (`compare`); in a young memory all levels
+turn at once. Its place is watched from then on: in every
+round of estimates the nodes just renewed are asked whether the surface stands there or one sees past it, at every
+level. So a level adopts, an event is undone, and comes back. What nobody looked at is left as it was.
+
+The fastest level is quick to believe a passer-by. An event is reported when a slower level has adopted it, or when it
+came back after it had been undone; until then it is only suspected, and forgotten when it goes.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from timemap_cli.changes.compare import compare
+from timemap_cli.changes.difference import Change, Kind
+from timemap_cli.changes.events import Event, Transition, Turn
+from timemap_cli.changes.matching import best_match, overlap
+from timemap_cli.changes.rules import Rules
+from timemap_cli.changes.track import Track, side_of
+from timemap_cli.changes.view import View
+from timemap_cli.model.estimates import Estimate
+from timemap_cli.model.nodes import Node
+
+Estimates = Mapping[str, Mapping[int, Estimate]]  # newest of each level and node
+_DEFAULT = Rules()
+
+
+class Tracker:
+    """All events of a map so far, and what is suspected."""
+
+    def __init__(self, levels: Sequence[str], radius: float, rules: Rules = _DEFAULT) -> None:
+        """`levels` fastest first; `radius` [m] is how far a node sees. One level alone has no events."""
+        self.levels = tuple(levels)
+        self._radius = radius
+        self._rules = rules
+        self._tracks: list[Track] = []
+        self._reported = 0
+        self._before: dict[int, Estimate] = {}  # by node: the slowest level's, of an earlier round
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """All events reported so far, in the order in which they were."""
+        found = [track.event() for track in self._tracks if track.id is not None]
+        return tuple(sorted(found, key=lambda event: event.id))
+
+    def update(
+        self, nodes: Sequence[Node], newest: Estimates, renewed: Sequence[Estimate]
+    ) -> list[Transition]:
+        """Take note of a round of estimates; `newest` holds them already. Returns what was found out."""
+        if len(self.levels) < 2 or not renewed:
+            return []
+        view = View.around({estimate.node for estimate in renewed}, nodes, newest, self.levels, self._radius)
+        if view is None:
+            return []
+        found: list[Transition] = []
+        for level in reversed(self.levels):  # slower levels first: they know the outline better
+            for change in self._candidates(nodes, view, level):
+                found += self._sight(change, level)
+        slowest = self.levels[-1]
+        self._before |= {number: newest[slowest][number] for number in view.renewed}
+        for track in self._tracks:
+            found += track.look(view, self._rules)
+        self._tracks = [track for track in self._tracks if not track.is_over]
+        return found + self._report()
+
+    def _candidates(self, nodes: Sequence[Node], view: View, level: str) -> list[Change]:
+        """Changes from the slowest level before this round to a level now, that a node just renewed has seen."""
+        now = view.newest[level]
+        before = {number: self._before[number] for number in now if number in self._before}
+        difference = compare(nodes, before, now, self._rules, radius=self._radius)
+        fresh = [change for change in difference.changes if view.renewed.intersection(change.nodes)]
+        return [change for change in fresh if not self._was_so(change, view)]
+
+    def _was_so(self, change: Change, view: View) -> bool:
+        """Whether the nodes said before this round what the candidate says now: it was only seen from elsewhere."""
+        said = view.words_before(change.points, self._before, self._rules)
+        return int(side_of(change.kind) * said.sum(dtype=np.int64)) > 0
+
+    def _sight(self, change: Change, level: str) -> list[Transition]:
+        """Put a candidate where it belongs: to what is watched there already, or to something new."""
+        dropped: list[Transition] = []
+        if change.points_before is not None:  # moved: one event, with what was known of it as vanished
+            gone = best_match(change.points_before, [t for t in self._tracks if t.kind is Kind.VANISHED])
+            if gone is not None:
+                dropped = self._drop(gone)
+        same = [t for t in self._tracks if t.takes(change.kind)]
+        track = best_match(change.points, same)
+        if track is not None:
+            track.refine(change, slower=level != self.levels[0])
+            for other in [t for t in same if t is not track and overlap(t.points, track.points) > 0.5]:
+                dropped += self._drop(other)
+        elif best_match(change.points, [t for t in self._tracks if t.is_undone_by(change.kind)]) is None:
+            self._tracks.append(Track(change, self.levels))
+        return dropped
+
+    def _drop(self, track: Track) -> list[Transition]:
+        self._tracks.remove(track)
+        return [Transition(Turn.DROPPED, track.event())] if track.id is not None else []
+
+    def _report(self) -> list[Transition]:
+        """Events that are sure enough now."""
+        found = []
+        for track in self._tracks:
+            if track.id is None and track.is_sure:
+                track.id = self._reported
+                self._reported += 1
+                found.append(Transition(Turn.SEEN, track.event()))
+                found += [
+                    Transition(Turn.ADOPTED, track.event(), level)
+                    for level in self.levels
+                    if track.adopted[level] is not None
+                ]
+        return found
