@@ -10,6 +10,7 @@ from typing import NoReturn
 import click
 
 from timemap_cli import __version__
+from timemap_cli.cli.changes import changes
 from timemap_cli.cli.config import config
 from timemap_cli.cli.diff import diff
 from timemap_cli.cli.info import info
@@ -27,11 +28,12 @@ def timemap() -> None:
 
     \b
       timemap replay monday.mcap tuesday.mcap
+      timemap changes
       timemap diff --level long mid
     """
 
 
-for _command in (info, replay, diff, config):
+for _command in (info, replay, changes, diff, config):
     timemap.add_command(_command)
 
 

@@ -8,6 +8,7 @@ from timemap_cli.changes.events import Event
 from timemap_cli.changes.hull import hull
 
 SCHEMA = "timemap.changes/1"
+_LONG_NS = 3_600_000_000_000
 _DIGITS = 4  # of a metre or a share: finer than any scanner
 
 
@@ -15,7 +16,7 @@ def changes_document(events: Sequence[Event], end_ns: int | None) -> dict[str, A
     """Values that JSON knows, without NaN or Infinity; `end_ns` is the newest scan replayed.
 
     Times are strings of nanoseconds (header stamps of scans), lengths metres in the map frame. `closed_ns` is null
-    while a change holds; `not_seen_since` says of one that holds that nobody has looked at it since `looked_ns`.
+    while a change holds; `not_seen_since` says of one that holds that nobody has looked at it for an hour and more.
     """
     told = [_event(event, end_ns) for event in events]
     return {"schema": SCHEMA, "events": told, "summary": summary(told)}
@@ -45,7 +46,7 @@ def _event(event: Event, end_ns: int | None) -> dict[str, Any]:
         "first_seen_ns": str(event.first_seen_ns),
         "last_seen_ns": str(event.last_seen_ns),
         "looked_ns": str(event.looked_ns),
-        "not_seen_since": event.holds and end_ns is not None and event.looked_ns < end_ns,
+        "not_seen_since": event.holds and end_ns is not None and end_ns - event.looked_ns > _LONG_NS,
         "closed_ns": _time(event.closed_ns),
         "adopted": {level: _time(at_ns) for level, at_ns in event.adopted.items()},
         "nodes": list(event.nodes),

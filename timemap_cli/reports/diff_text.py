@@ -5,6 +5,7 @@ from math import hypot, isfinite
 
 from timemap_cli.changes.difference import Change, Difference, Kind, Sector
 from timemap_cli.reports.sides import ComparedSide
+from timemap_cli.reports.tables import place, plural, table
 from timemap_cli.times import format_time
 
 _NODES_SHOWN = 4  # more do not help to find the place, and the line stays within a terminal
@@ -20,7 +21,7 @@ def diff_text(difference: Difference, old: ComparedSide, new: ComparedSide) -> s
     lines = [*_sides(old, new), "", _summary(difference)]
     if difference.changes:
         rows = [_HEADINGS, *(_row(change, difference.angle_bins) for change in difference.changes)]
-        lines += ["", *_table(rows)]
+        lines += ["", *table(rows)]
     return "\n".join(lines)
 
 
@@ -29,24 +30,24 @@ def _sides(old: ComparedSide, new: ComparedSide) -> list[str]:
         (label, f"level {side.level}", f"at {format_time(side.stamp_ns)}", f"of {side.result}")
         for label, side in (("from", old), ("to", new))
     ]
-    return _table(rows)
+    return table(rows)
 
 
 def _summary(difference: Difference) -> str:
     if not difference.nodes:
         told = "Nothing could be compared: no node was seen for both sides"
         return f"{told}{_silent(difference)}."
-    nodes, bins = _plural(len(difference.nodes), "node"), _plural(difference.compared_bins, "angle bin")
+    nodes, bins = plural(len(difference.nodes), "node"), plural(difference.compared_bins, "angle bin")
     looked = f"{nodes}, {bins} compared"
     if not difference.changes:
         return f"Nothing differs: {looked}{_silent(difference)}."
     kinds = ", ".join(f"{difference.count(kind)} {kind.value}" for kind in Kind if difference.count(kind))
-    return f"{_plural(len(difference.changes), 'change')}: {kinds} ({looked}{_silent(difference)})."
+    return f"{plural(len(difference.changes), 'change')}: {kinds} ({looked}{_silent(difference)})."
 
 
 def _silent(difference: Difference) -> str:
     silent = len(difference.silent_nodes)
-    return f"; {_plural(silent, 'node')} known to one side only or not seen again" if silent else ""
+    return f"; {plural(silent, 'node')} known to one side only or not seen again" if silent else ""
 
 
 def _row(change: Change, angle_bins: int) -> tuple[str, ...]:
@@ -54,7 +55,7 @@ def _row(change: Change, angle_bins: int) -> tuple[str, ...]:
     widest = sorted(change.sectors, key=lambda s: (-s.bins(angle_bins), s.node, s.start_bin))
     return (
         change.kind.value,
-        _place(change.x, change.y),
+        place(change.x, change.y),
         f"{x_max - x_min:.2f} x {y_max - y_min:.2f}",
         _nodes(list(dict.fromkeys(sector.node for sector in widest))),
         _ranges(change, [sector for sector in widest if sector.node == widest[0].node]),
@@ -79,7 +80,7 @@ def _origin(change: Change) -> str:
     if change.moved_from is None:
         return ""
     x, y = change.moved_from
-    return f"by {hypot(change.x - x, change.y - y):.2f} m from {_place(x, y)}"
+    return f"by {hypot(change.x - x, change.y - y):.2f} m from {place(x, y)}"
 
 
 def _nodes(numbers: Sequence[int]) -> str:
@@ -88,22 +89,5 @@ def _nodes(numbers: Sequence[int]) -> str:
     return f"{shown} and {rest} more" if rest > 0 else shown
 
 
-def _place(x: float, y: float) -> str:
-    x, y = (round(value, 2) + 0.0 for value in (x, y))  # the sum turns -0.0 into 0.0
-    return f"{x:.2f}, {y:.2f}"
-
-
 def _metres(value: float) -> str:
     return f"{value:.2f}" if isfinite(value) else "clear"
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
-def _table(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Rows as lines, the columns aligned left and two spaces apart."""
-    widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-    ]
