@@ -26,6 +26,7 @@ class Track:
         self.kind = change.kind
         self.points = _thinned(change.points)
         self.moved_from = change.moved_from
+        self.points_before = change.points_before
         self.adopted: dict[str, int | None] = dict.fromkeys(levels)
         self._levels = tuple(levels)
         self._support = change.support
@@ -75,7 +76,11 @@ class Track:
             self._support = change.support
         self._by_slower |= slower
         if change.kind is Kind.MOVED:
-            self.kind, self.moved_from = change.kind, change.moved_from
+            self.kind, self.moved_from, self.points_before = (
+                change.kind,
+                change.moved_from,
+                change.points_before,
+            )
 
     def look(self, view: View, rules: Rules) -> list[Transition]:
         """Ask the renewed nodes about the place, level by level."""
@@ -160,7 +165,8 @@ def side_of(kind: Kind) -> int:
 
 
 def _thinned(points: Floats) -> Floats:
-    """The first of the points (n, 2) in each cell of a grid, in order of the cells."""
+    """One of the points (n, 2) in each cell of a grid, the same whatever their order."""
+    points = points[np.lexsort(points.T)]
     cells = np.floor(points / _GRID_M).astype(np.int64)
     _, first = np.unique(cells, axis=0, return_index=True)
     return points[first]

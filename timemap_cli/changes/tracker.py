@@ -51,7 +51,7 @@ class Tracker:
         """Take note of a round of estimates; `newest` holds them already. Returns what was found out."""
         if len(self.levels) < 2 or not renewed:
             return []
-        view = View.around({estimate.node for estimate in renewed}, nodes, newest, self.levels, self._radius)
+        view = View.of({estimate.node for estimate in renewed}, nodes, newest, self.levels, self._radius)
         if view is None:
             return []
         found: list[Transition] = []
@@ -59,19 +59,18 @@ class Tracker:
             for change in self._candidates(nodes, view, level):
                 found += self._sight(change, level)
         slowest = self.levels[-1]
-        self._before |= {number: newest[slowest][number] for number in view.renewed}
+        self._before |= view.estimates[slowest]
         for track in self._tracks:
             found += track.look(view, self._rules)
         self._tracks = [track for track in self._tracks if not track.is_over]
         return found + self._report()
 
     def _candidates(self, nodes: Sequence[Node], view: View, level: str) -> list[Change]:
-        """Changes from the slowest level before this round to a level now, that a node just renewed has seen."""
-        now = view.newest[level]
+        """Changes from the slowest level before this round to a level now."""
+        now = view.estimates[level]
         before = {number: self._before[number] for number in now if number in self._before}
-        difference = compare(nodes, before, now, self._rules, radius=self._radius)
-        fresh = [change for change in difference.changes if view.renewed.intersection(change.nodes)]
-        return [change for change in fresh if not self._was_so(change, view)]
+        difference = compare(nodes, before, now, self._rules, radius=self._radius, only_renewed=True)
+        return [change for change in difference.changes if not self._was_so(change, view)]
 
     def _was_so(self, change: Change, view: View) -> bool:
         """Whether the nodes said before this round what the candidate says now: it was only seen from elsewhere."""
@@ -91,9 +90,17 @@ class Tracker:
             track.refine(change, slower=level != self.levels[0])
             for other in [t for t in same if t is not track and overlap(t.points, track.points) > 0.5]:
                 dropped += self._drop(other)
-        elif best_match(change.points, [t for t in self._tracks if t.is_undone_by(change.kind)]) is None:
+        elif not self._is_told(change):
             self._tracks.append(Track(change, self.levels))
         return dropped
+
+    def _is_told(self, change: Change) -> bool:
+        """Whether a candidate only says that something is undone, or that its place is left since it moved."""
+        undone = [track for track in self._tracks if track.is_undone_by(change.kind)]
+        left = [track.points_before for track in self._tracks if track.points_before is not None]
+        return best_match(change.points, undone) is not None or (
+            change.kind is Kind.VANISHED and any(overlap(change.points, points) > 0.5 for points in left)
+        )
 
     def _drop(self, track: Track) -> list[Transition]:
         self._tracks.remove(track)

@@ -1,4 +1,4 @@
-"""The newest estimates of all levels around the nodes that were just renewed."""
+"""What the nodes that were just renewed say: only they may judge, the others have not looked."""
 
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
@@ -15,16 +15,15 @@ from timemap_cli.model.nodes import Node
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Nodes that every level knows, near those just renewed."""
+    """The renewed nodes that every level knows."""
 
-    newest: Mapping[str, Mapping[int, Estimate]]  # by level and node
-    renewed: frozenset[int]  # numbers of the nodes just renewed
+    estimates: Mapping[str, Mapping[int, Estimate]]  # by level and node
     places: Places
-    rings: Mapping[str, Rings]  # of the renewed nodes alone, in the order of `places`
-    stamps_ns: Ints  # (rows,) newest scan of each renewed node at the fastest level
+    rings: Mapping[str, Rings]  # by level, in the order of `places`
+    stamps_ns: Ints  # (rows,) newest scan of each node at the fastest level
 
     @classmethod
-    def around(
+    def of(
         cls,
         renewed: AbstractSet[int],
         nodes: Sequence[Node],
@@ -33,34 +32,22 @@ class View:
         radius: float,
     ) -> "View | None":
         """The view from the renewed nodes; None if there is none that every level knows."""
-        known = sorted(set.intersection(*(set(newest[level]) for level in levels)))
-        rows = [number for number in known if number in renewed]
+        rows = sorted(number for number in renewed if all(number in newest[level] for level in levels))
         if not rows:
             return None
-        centres = np.array([(node.x, node.y) for node in nodes])
-        near = _near(centres, rows, radius).intersection(known)
-        local = {level: {n: newest[level][n] for n in sorted(near)} for level in levels}
-        rings = {level: stack(newest[level], rows) for level in levels}
+        estimates = {level: {number: newest[level][number] for number in rows} for level in levels}
+        rings = {level: stack(estimates[level], rows) for level in levels}
         places = place(nodes, rows, rings[levels[0]].ranges.shape[1], radius)
-        stamps_ns = np.array([newest[levels[0]][n].stamp_ns for n in rows], np.int64)
-        return cls(local, frozenset(rows), places, rings, stamps_ns)
+        stamps_ns = np.array([estimates[levels[0]][number].stamp_ns for number in rows], np.int64)
+        return cls(estimates, places, rings, stamps_ns)
 
     def words(self, points: Floats, level: str, rules: Rules) -> Words:
-        """What each renewed node (rows,) says of a surface at a level."""
+        """What each node (rows,) says of a surface at a level."""
         return words(points, self.rings[level], self.places, rules)
 
     def words_before(self, points: Floats, before: Mapping[int, Estimate], rules: Rules) -> Words:
-        """What the renewed nodes that have earlier estimates said of a surface by them."""
+        """What the nodes that have earlier estimates said of a surface by them."""
         known = np.isin(self.places.numbers, list(before))
         rows = self.places.numbers[known]
         places = replace(self.places, numbers=rows, centres=self.places.centres[known])
         return words(points, stack(before, rows.tolist()), places, rules)
-
-
-def _near(centres: Floats, rows: Sequence[int], radius: float) -> set[int]:
-    """Numbers of the nodes within the radius of one of `rows`."""
-    low, high = centres[rows].min(axis=0) - radius, centres[rows].max(axis=0) + radius
-    inside = np.flatnonzero(((centres >= low) & (centres <= high)).all(axis=1))
-    apart = centres[inside, None, :] - centres[rows]
-    reach = (apart * apart).sum(axis=2).min(axis=1) <= radius * radius
-    return set(inside[reach].tolist())
