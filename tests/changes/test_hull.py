@@ -47,9 +47,9 @@ def test_the_outline_turns_left_and_holds_all_points(points):
 def test_overlap_is_the_share_of_the_smaller_that_lies_near():
     line = np.stack([np.arange(0, 2, 0.1), np.zeros(20)], axis=1)
     assert overlap(line, line[:3]) == 1.0
-    assert overlap(line, line + (0, 0.25)) == 1.0
-    assert overlap(line, line + (0, 0.35)) == 0.0
-    assert overlap(line, line + (1.65, 0)) == pytest.approx(0.3)
+    assert overlap(line, line + np.array([0, 0.25])) == 1.0
+    assert overlap(line, line + np.array([0, 0.35])) == 0.0
+    assert overlap(line, line + np.array([1.65, 0])) == pytest.approx(0.3)
 
 
 def test_the_best_match_overlaps_by_half_at_least():
