@@ -77,6 +77,7 @@ def replay(
         writing = _Writing(result, [level.name for level in settings.levels])
         steps = observing.steps(*_span_ns(plan, start, end))
         for learnt in stack.enter_context(closing(mapped(learning, steps))):
+            observing.set_aside(learnt.lost)
             writing.take(learnt, observing.nodes)
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
@@ -107,6 +108,11 @@ class _Observing:
     def damage(self) -> tuple[str, ...]:
         """What is wrong with the recordings, as far as read."""
         return tuple(f"{r.path}: {problem}" for r in self._recordings for problem in r.problems)
+
+    def set_aside(self, scans: int) -> None:
+        """Take note that so many of the scans seen were not learnt."""
+        self.used -= scans
+        self.counts.drop("lost", scans)
 
     def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Observations | None]:
         """Blocks of observations in stamp order; None where a recording has ended."""
