@@ -57,9 +57,7 @@ class LevelSettings:
 
 @dataclass(frozen=True, slots=True)
 class GateSettings:
-    """When a slower level takes a scan: moved or turned enough since its last one, and time has passed; and which
-    scans no level takes.
-    """
+    """When a slower level takes a scan: moved or turned enough, and time has passed; and what no level takes."""
 
     min_travel: float = setting(0.05, Number(0.0, 100.0, "m"), "moved at least so far, or")
     min_turn_deg: float = setting(5.0, Number(0.0, 180.0, "deg"), "turned at least so far; and")

@@ -238,6 +238,11 @@ def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
     for level, shortfall in writing.shortfalls.items():
         if shortfall > 0.1:
             yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
+    if lost := observing.counts.dropped.get("lost"):
+        yield (
+            f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
+            "lost, or the place is another one now (to learn them at once: gate.max_contradiction: 1)"
+        )
     if unusable := observing.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
     if writing.span_ns > VIEWERS_SPAN_NS:

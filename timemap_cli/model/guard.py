@@ -15,7 +15,7 @@ from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.observer import Observations
 from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
 
-ENOUGH_SCANS = 15  # samples behind a range that may judge a scan; scans of a moving robot that overrule them ...
+ENOUGH_SCANS = 15  # samples behind a range that judges; and scans of a moving robot that overrule it ...
 PERSISTENCE_NS = 600_000_000_000  # ... if so much time lies between the first of them and the last
 AGREEMENT = 0.5  # of the share that sets aside: two scans of one world contradict each other in less
 
