@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from benchmarks.changes.places import APPEARED, Claim, Event, Place
-from benchmarks.changes.truth import Truth, gap
+from benchmarks.changes.truth import Bounds, Truth, gap
 
 NEAR_M = 0.3  # between the bounds of a claim and of the truth
+BEYOND_M = 0.5  # by which a claim may reach beyond the truth: what covers half a room tells no place
 PERSON_M = 0.5  # between a claim and somebody who is there
 PERSON_NS = 5_000_000_000  # by which an event's stamps may miss the time somebody was there
 SHORT_LIVED_NS = 60_000_000_000
@@ -14,13 +15,19 @@ SHORT_LIVED_NS = 60_000_000_000
 def fits(claim: Claim, place: Place) -> bool:
     """Whether kind, place and time agree.
 
-    The bounds overlap or are at most `NEAR_M` apart; the event was first seen, and adopted by any level, no
-    earlier than the change, and first seen before the change was undone.
+    The bounds overlap or are at most `NEAR_M` apart, and the claim's reach at most `BEYOND_M` beyond the
+    place's. The event was first seen, and adopted by any level, no earlier than the change, and first seen
+    before the change was undone.
     """
     event = claim.event
     earliest = min([event.first_seen_ns, *(ns for ns in event.adopted.values() if ns is not None)])
     in_time = earliest >= place.since_ns and (place.until_ns is None or event.first_seen_ns < place.until_ns)
-    return in_time and claim.kind in place.kinds and gap(claim.bounds, place.bounds) <= NEAR_M
+    return in_time and claim.kind in place.kinds and _at(claim.bounds, place.bounds)
+
+
+def _at(told: Bounds, true: Bounds) -> bool:
+    beyond = max(true[0] - told[0], true[1] - told[1], told[2] - true[2], told[3] - true[3])
+    return gap(told, true) <= NEAR_M and beyond <= BEYOND_M
 
 
 def match(told: Sequence[Claim], places: Sequence[Place]) -> dict[int, int]:

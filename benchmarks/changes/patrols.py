@@ -71,17 +71,20 @@ def _patrol(day: int) -> Patrol:
 
 
 def _people(day: int, rng: np.random.Generator) -> tuple[Walk, ...]:
-    """Two who walk along the corridor, and one who goes into a room, stands there for 16 s, and leaves."""
-    duration = patrol(day).duration
-    starts, speeds = rng.uniform(0, duration - 30, 3), rng.uniform(0.8, 1.3, 3)
+    """Two who walk along the corridor, and one who stands in a room for 16 s while the robot is there."""
+    motion = patrol(day)
+    starts, speeds = rng.uniform(0, motion.duration - 30, 2), rng.uniform(0.8, 1.3, 3)
     room, place = STOPS[int(rng.integers(len(STOPS)))]
     x, side = DOORWAYS[room], SOUTH - 0.7 if place[1] < SOUTH else NORTH + 0.7
     lane = SOUTH + 0.4
     inside = ((0.4, lane), (x, lane), (x, side), place)
+    on_the_way = float(np.hypot(*np.diff(np.array(inside), axis=0).T).sum()) / speeds[2]
+    met = motion.times[np.linalg.norm(motion.poses[:, :2] - place, axis=1).argmin()]
+    begins = max(0.0, float(met) - rng.uniform(2, 14) - on_the_way)
     return (
         walk("visitor", starts[0], speeds[0], (WIDTH - 0.4, lane), (0.4, lane)),
         walk("courier", starts[1], speeds[1], (0.4, lane), (WIDTH - 0.4, lane)),
-        walk("colleague", starts[2], speeds[2], *inside, place, place, *inside[::-1][1:]),
+        walk("colleague", begins, speeds[2], *inside, place, place, *inside[::-1][1:]),
     )
 
 

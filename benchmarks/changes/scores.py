@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.changes.matching import match, of_people
+from benchmarks.changes.matching import fits, match, of_people
 from benchmarks.changes.places import MOVED, Claim, Event, Place, claims, places_of_changes
 from benchmarks.changes.truth import Bounds, Recorded, Truth
 from benchmarks.changes.visits import Pace
@@ -34,6 +34,11 @@ class Found:
         """Claims that tell no place, people left out."""
         right = set(self.match.values())
         return [c for i, c in enumerate(self.claims) if i not in right and c not in self.people]
+
+    @property
+    def again(self) -> list[Claim]:
+        """False claims that fit a place which another claim tells."""
+        return [c for c in self.false if any(fits(c, place) for place in self.places)]
 
     @property
     def recall(self) -> float | None:
