@@ -49,18 +49,17 @@ def unknown_share(reader: ResultReader, level: str) -> float:
 def report(result: Path, truth: Truth) -> str:
     """All figures of a result."""
     with ResultReader(result) as reader:
-        nodes = [(node.x, node.y) for node in reader.nodes]
+        nodes = len(reader.nodes)
         unknown = {level: unknown_share(reader, level) for level in reader.levels}
-        settings = reader.config
-    parts = [recordings_table(truth.recordings) + f", {len(nodes)} nodes"]
+    parts = [recordings_table(truth.recordings) + f", {nodes} nodes"]
     try:
         document = timemap_json("changes", str(result))
     except RuntimeError as error:
         parts.append(f"no events: {error}")
     else:
-        level_paces = paces(patrols.patrols(len(truth.recordings)), nodes, settings)
+        level_paces = paces(result, patrols.patrols(len(truth.recordings)))
         parts.append(events_table(score(read_events(document), truth, level_paces)))
-    days = [day_by_day(result, level, truth, len(nodes)) for level in unknown]
+    days = [day_by_day(result, level, truth, nodes) for level in unknown]
     return "\n\n".join([*parts, days_table(days, unknown)])
 
 

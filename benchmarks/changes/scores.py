@@ -106,30 +106,37 @@ def seen_in(told: Sequence[Claim], recordings: Sequence[Recorded]) -> list[Claim
 
 @dataclass(frozen=True, slots=True)
 class Adoption:
-    """How long one level took to adopt one change that is told."""
+    """How long one level took to adopt one change that is told.
+
+    Estimates are made now and then, so the level changed its mind between the estimate that shows it, after
+    `half_lives`, and the one before, after `at_least`. Where it was not adopted both run until the change was
+    undone or all ended.
+    """
 
     what: str
     level: str
-    half_lives: float  # until it was adopted; where it was not, until the change was undone or all ended
+    at_least: float
+    half_lives: float
     adopted: bool
 
     @property
     def late(self) -> bool:
-        """Whether the level took, or has waited, longer than it may."""
-        return self.half_lives > MOST_HALF_LIVES
+        """Whether the level surely took, or has waited, longer than it may."""
+        return self.at_least > MOST_HALF_LIVES
 
 
 def adoptions(found: Found, paces: Mapping[str, Pace], end_ns: int) -> list[Adoption]:
     """Of every told place that does not recur and every level, at the nodes that the event names."""
     taken = []
     for place, claim in found.pairs:
-        if place.change.recurring:
+        if place.change.recurring or not claim.event.nodes:
             continue
         for level, ns in claim.event.adopted.items():
             until_ns = ns if ns is not None else min(end_ns, place.until_ns or end_ns)
-            passed = paces[level].half_lives(claim.event.nodes, place.since_ns, until_ns)
-            if passed is not None:
-                taken.append(Adoption(place.change.what, level, passed, ns is not None))
+            span = (claim.event.nodes, place.since_ns, until_ns)
+            passed = paces[level].half_lives(*span)
+            before = passed if ns is None else paces[level].half_lives_before(*span)
+            taken.append(Adoption(place.change.what, level, before, passed, ns is not None))
     return taken
 
 

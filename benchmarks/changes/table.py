@@ -37,7 +37,7 @@ def _adoption_lines(adoptions: Sequence[Adoption]) -> list[str]:
         mine = [a for a in adoptions if a.level == level]
         took = [a.half_lives for a in mine if a.adopted]
         overdue = sum(a.late and not a.adopted for a in mine)
-        text = f"median {median(took):.2f}, most {max(took):.2f} half-lives; " if took else ""
+        text = f"median {median(took):.2f}, most {max(took):.2f} half-lives at the estimate; " if took else ""
         lines.append(
             f"  adopted, {level:9} {len(took)} of {len(mine)}; {text}"
             f"{sum(a.late and a.adopted for a in mine)} late, {overdue} overdue (beyond {MOST_HALF_LIVES})"

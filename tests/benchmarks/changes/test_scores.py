@@ -1,5 +1,7 @@
 """Figures of hand-made events."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,7 +19,10 @@ DOOR = change("vanished", square(0, 9, 0.5), (190, 290), (390, 490))
 TRUTH = truth(TABLE, PARCEL, DOOR)
 
 STAMPS = np.array([n * S for n in (110, 120, 210, 220, 310, 320, 410, 420, 510, 520)])
-PACES = {"short": Pace(Span(2.0, "obs"), {0: STAMPS}), "mid": Pace(Span(4.0, "obs"), {0: STAMPS})}
+PACES = {
+    "short": Pace(Span(2.0, "obs"), {0: STAMPS}, {0: STAMPS}),
+    "mid": Pace(Span(4.0, "obs"), {0: STAMPS}, {0: STAMPS[1::2]}),
+}
 
 PERFECT = (
     event("moved", (4, 0, 5, 1), 210, short=220, mid=320, moved_from=(0, 0, 1, 1)),
@@ -94,11 +99,23 @@ def test_flicker_is_toggles_beyond_the_true_ones_per_event():
 
 
 def test_delay_counts_half_lives_from_the_change_to_its_adoption():
-    """Scans of the node from 190 s: 210, 220 | 310, 320: short has 2 of 2 by 220 s, mid 4 of 4 by 320 s."""
-    taken = {(a.what, a.level): a for a in score(PERFECT[:1], truth(TABLE), PACES).adoptions}
-    assert taken["thing", "short"].half_lives == 1.0
-    assert taken["thing", "mid"].half_lives == 1.0
+    """Scans of the node from 190 s: 210, 220, 310, 320. By 220 s short has 2 of 2, by 320 s mid 4 of 4.
+
+    Short is estimated after each scan, mid after every second.
+    """
+    taken = {a.level: a for a in score(PERFECT[:1], truth(TABLE), PACES).adoptions}
+    assert (taken["short"].at_least, taken["short"].half_lives) == (0.5, 1.0)
+    assert (taken["mid"].at_least, taken["mid"].half_lives) == (0.5, 1.0)
     assert not any(a.late for a in taken.values())
+
+
+@pytest.mark.parametrize(("mid_s", "at_least", "late"), [(420, 1.0, False), (520, 1.5, True)])
+def test_a_level_is_late_if_the_estimate_before_could_have_shown_it(mid_s, at_least, late):
+    """Mid is estimated at 220, 320, 420, 520 s, each time half a half-life later."""
+    one = event("vanished", (0, 0, 1, 1), 210, mid=mid_s)
+    (_, mid) = score((one,), truth(TABLE), PACES).adoptions
+    assert (mid.at_least, mid.late) == (at_least, late)
+    assert mid.half_lives == at_least + 0.5
 
 
 def test_a_level_that_never_adopts_is_overdue_after_its_time():
@@ -113,8 +130,9 @@ def test_a_level_has_no_longer_than_the_change_holds():
     assert (short.half_lives, mid.half_lives, mid.late) == (1.0, 0.5, False)
 
 
-def test_what_recurs_has_no_delay():
+def test_what_recurs_or_names_no_node_has_no_delay():
     assert score(PERFECT[2:], truth(DOOR), PACES).adoptions == ()
+    assert score((replace(PERFECT[1], nodes=()),), truth(PARCEL), PACES).adoptions == ()
 
 
 def test_the_table_names_what_was_missed_and_what_is_false():
