@@ -17,7 +17,8 @@ from benchmarks.changes.days import TIMEMAP, day_by_day, timemap_json
 from benchmarks.changes.places import read_events
 from benchmarks.changes.scores import score
 from benchmarks.changes.table import days_table, events_table, recordings_table
-from benchmarks.changes.truth import Truth, building_truth, to_json
+from benchmarks.changes.truth import Truth, building_truth
+from benchmarks.changes.truth_json import from_json, to_json
 from benchmarks.changes.visits import paces
 from timemap_cli.results.reader import ResultReader
 
@@ -73,11 +74,11 @@ def main(quick: bool, folder: Path) -> None:
     days = QUICK_DAYS if quick else DAYS
     made = recordings_folder(folder.resolve())
     recordings = patrols.make(made, patrols.patrols(days))
-    truth = building_truth(days)
-    (made / f"truth_{days}.json").write_text(to_json(truth), encoding="utf-8")
+    truth = made / f"truth_{days}.json"
+    truth.write_text(to_json(building_truth(days)), encoding="utf-8")
     result = made / f"days_{days}.timemap.mcap"
     replay(recordings, result)
-    click.echo(report(result, truth))
+    click.echo(report(result, from_json(truth.read_text(encoding="utf-8"))))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ import pytest
 
 from benchmarks.changes.building import DAYS
 from benchmarks.changes.patrols import FIRST_NS
-from benchmarks.changes.truth import Walked, bounds_of, building_truth, from_json, gap, to_json
+from benchmarks.changes.truth import Walked, bounds_of, building_truth, gap
+from benchmarks.changes.truth_json import from_json, to_json
 from tests.benchmarks.changes.making import S, change, square, truth
 
 DAY_NS = 86_400 * S
