@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from timemap_cli.changes.apart import stands_apart
 from timemap_cli.changes.bins import lost_bins
 from timemap_cli.changes.difference import Change, ComparedNode, Difference, Kind, Sector
 from timemap_cli.changes.moves import pair_moves
@@ -64,7 +65,8 @@ def _angle_bins(numbers: Sequence[int], old: Mapping[int, Estimate], new: Mappin
 def _things(having: Rings, lacking: Rings, places: Places, rules: Rules) -> list[Thing]:
     """What `having` has and `lacking` has not."""
     lost = lost_bins(having, lacking, places, rules)
-    runs = find_runs(lost, having.ranges, places, rules)
+    found = find_runs(lost, having.ranges, places, rules)
+    runs = [run for run in found if stands_apart(run, lacking, places, rules)]
     return [
         thing
         for thing in link(runs, rules.link_m)

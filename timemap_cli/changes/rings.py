@@ -22,11 +22,8 @@ class Rings:
     ranges: Floats  # (rows, angle_bins) [m]; +inf clear, NaN unknown
     support: Floats  # (rows, angle_bins) share of what is known that agrees, 0..1
     samples: Ints  # (rows, angle_bins) remembered ranges
-    known: Floats  # (rows, angle_bins) share of the level's window that is known, 0..1: it sinks where nobody looks
-
-    def fresh(self, rules: Rules) -> Bools:
-        """Angle bins looked at lately enough to have a say, (rows, angle_bins)."""
-        return np.asarray(self.known >= rules.min_known)
+    last_seen_ns: Ints  # (rows, angle_bins) [ns] newest scan that looked there
+    stamps_ns: Ints  # (rows,) newest scan of each row
 
     def firm(self, rules: Rules, min_samples: int) -> Bools:
         """Angle bins known well enough to be compared, (rows, angle_bins)."""
@@ -52,6 +49,12 @@ class Places:
         bearings = (bins + 0.5) * self.bin_rad
         toward = np.stack((np.cos(bearings), np.sin(bearings)), axis=1)
         return np.asarray(self.centres[row] + ranges[:, None] * toward)
+
+    def ends(self, ranges: Floats) -> Floats:
+        """Ends of ranges (..., angle_bins) [m] as (..., angle_bins, 2) [m] from their node; NaN where there is none."""
+        bearings = (np.arange(self.angle_bins) + 0.5) * self.bin_rad
+        finite = np.where(np.isfinite(ranges), ranges, np.nan)
+        return np.stack((finite * np.cos(bearings), finite * np.sin(bearings)), axis=-1)
 
     def edge_bins(self, rules: Rules) -> int:
         """How many bins to either side an edge may shift; at least one."""
@@ -84,5 +87,6 @@ def stack(side: Mapping[int, Estimate], numbers: Sequence[int]) -> Rings:
         ranges=np.array([e.ranges for e in estimates], dtype=np.float64),
         support=np.clip(share, 0.0, 1.0),
         samples=np.array([e.samples for e in estimates], dtype=np.int64),
-        known=known,
+        last_seen_ns=np.array([e.last_seen_ns for e in estimates], dtype=np.int64),
+        stamps_ns=np.array([e.stamp_ns for e in estimates], dtype=np.int64),
     )

@@ -17,6 +17,9 @@ class Rules:
     min_step_share: float = 0.03  # of the nearer range: a heading error of 1-2 degrees at a slanted wall
     clear_margin: float = 2.0  # in steps: a surface so close to the radius may be clear at the next look
     edge_deg: float = 2.0  # a range shown this close in bearing was only seen round an edge
+    min_apart_m: float = (
+        0.15  # from all surfaces of the other side: at a flat angle poses shift ranges by more
+    )
     max_gap_bins: int = 1  # a coarse scanner leaves single bins empty
     max_jump_m: float = 0.5  # a farther step along one sector is another thing behind
     min_bins: int = 3  # one or two bins are mixed pixels and thin edges
@@ -26,7 +29,9 @@ class Rules:
         5  # over all nodes: what stands near a path is seen by several, or by one in many bins
     )
     vote_samples: int = 5  # a node that looked less often has no say about a neighbour's report
-    min_known: float = 0.5  # of the window: what was not looked at since is no witness
+    max_age_ns: int = (
+        3_600_000_000_000  # who last looked there an hour before may have seen another state of affairs
+    )
     vote_share: float = 0.5  # of the nodes that can tell; to ask for two loses most, which only one node saw
     move_max_m: float = 1.0  # beyond a metre another thing of that shape is as likely
     move_shape_m: float = 0.1  # outlines farther apart than bin spacing and noise explain are two shapes

@@ -13,20 +13,25 @@ def is_believed(thing: Thing, having: Rings, lacking: Rings, places: Places, rul
 
     A node never had it where it saw past its points on the side that has it. A node that shows it on both sides,
     because it cannot tell it from what is behind or has not made up its mind yet, has no say; nor has one that
-    can tell about less than half of the points from its place, or did not look there lately.
+    can tell about less than half of the points from its place, and who last looked there more than
+    `max_age_ns` before the newest of those who report it contradicts nothing: it may have come in between.
     """
     points = thing.points[:: -(-len(thing.points) // _POINTS)]
-    agree, contradict = _count(points, having, lacking, places, rules)
+    reported_ns = int(having.stamps_ns[[run.row for run in thing.runs]].max())
+    agree, contradict = _count(points, reported_ns, having, lacking, places, rules)
     judges = 2 * (agree + contradict) >= len(points)
     in_favour = judges & (agree >= contradict)
     return not judges.any() or float(in_favour[judges].mean()) > rules.vote_share
 
 
-def _count(points: Floats, having: Rings, lacking: Rings, places: Places, rules: Rules) -> tuple[Ints, Ints]:
+def _count(
+    points: Floats, reported_ns: int, having: Rings, lacking: Rings, places: Places, rules: Rules
+) -> tuple[Ints, Ints]:
     """How many of the points each node within reach agrees with, and contradicts, two (nodes,)."""
     rows, bins, ranges = towards(points, places)
     had, never = look(having, rows, bins, ranges, places, rules)
     _, sees_past = look(lacking, rows, bins, ranges, places, rules)
-    often = (having.firm(rules, rules.vote_samples) & having.fresh(rules))[rows, bins]
+    often = having.firm(rules, rules.vote_samples)[rows, bins]
     agree = often & had & sees_past & lacking.firm(rules, rules.min_samples)[rows, bins]
-    return agree.sum(axis=1), (often & never).sum(axis=1)
+    lately = having.last_seen_ns[rows, bins] >= reported_ns - rules.max_age_ns
+    return agree.sum(axis=1), (often & never & lately).sum(axis=1)

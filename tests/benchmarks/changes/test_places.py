@@ -25,12 +25,14 @@ DOCUMENT = {
 
 
 def told(**more: object) -> Event:
-    (one,) = read_events(DOCUMENT | {"events": [DOCUMENT["events"][0] | more]})
+    (one,) = read_events(
+        DOCUMENT | {"events": [DOCUMENT["events"][0] | {"episodes": [{"until_ns": None}]} | more]}
+    )
     return one
 
 
 def test_an_event_needs_no_more_than_the_fixed_fields():
-    (one,) = read_events(DOCUMENT)
+    one = told()
     assert one == Event("7", "appeared", (0.5, 1.5, 1.5, 2.5), 100, 900, {"short": 200, "mid": None}, (3, 4))
 
 
@@ -41,12 +43,11 @@ def test_another_schema_is_refused():
 
 def test_a_closed_event_has_toggled_twice():
     assert told().toggles == 1
-    assert told(closed_ns=None).toggles == 1
-    assert told(closed_ns="900").toggles == 2
+    assert told(episodes=[{"since_ns": "100", "until_ns": "900"}]).toggles == 2
 
 
 def test_episodes_tell_every_toggle():
-    episodes = [{"closed_ns": "200"}, {"closed_ns": "400"}, {"closed_ns": None}]
+    episodes = [{"until_ns": "200"}, {"until_ns": "400"}, {"until_ns": None}]
     assert told(episodes=episodes, recurring=True).toggles == 5
     assert told(episodes=episodes, recurring=True).recurring
 
