@@ -1,19 +1,18 @@
 """Fig. 6, convergence: a box appears in a round room and stays. When does each level show it, and how?"""
 
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from benchmarks.paper.definitions import DEFINITIONS
-from benchmarks.paper.metrics import Change, delay, error, half_and_half, shows_new
+from benchmarks.paper.metrics import Change
 from benchmarks.paper.rivals import rivals
 from benchmarks.paper.scene import ROUND_ROOM, look
 from benchmarks.paper.section import Figure, Scale, Section, Table
-from benchmarks.paper.watched import EVERY, LONG, MID, Watched, drawn, old_history
+from benchmarks.paper.trial import Outcome, Trial
+from benchmarks.paper.watched import EVERY, LONG, MID
 from benchmarks.paper.words import number, scans
-from sample_logs.rays import Floats
 from sample_logs.world import box, outline_segments
 from timemap_cli.model.levels import Level
 
@@ -22,15 +21,6 @@ if TYPE_CHECKING:
 
 BOX = outline_segments(box(0.95, 0.2, 0.4, 0.5, 20.0))
 _SHOWN = ("ours", "profile: paper", "eq. 4 (row sums)", "median per angle bin")
-
-
-@dataclass(frozen=True, slots=True)
-class _Outcome:
-    delay: float  # [scans] mean over nodes; NaN where one never follows
-    slowest: float
-    mixed: float  # [scans] for which a node shows the box half
-    error: float  # [m] at the end
-    share: Floats  # (estimates,) of the changed angle bins that show the box
 
 
 def run(scale: Scale) -> Section:
@@ -75,30 +65,21 @@ def run(scale: Scale) -> Section:
     )
 
 
-def measured(level: Level, nodes: int, *, definitions_only: bool) -> dict[str, _Outcome]:
+def measured(level: Level, nodes: int, *, definitions_only: bool) -> dict[str, Outcome]:
     """What becomes of the box at one level, for each definition."""
     random = np.random.default_rng(6)
     world = np.concatenate((ROUND_ROOM, BOX))
-    change = Change.between(ROUND_ROOM, world)
-    before, after = look(ROUND_ROOM, 400, random).virtual(), look(world, 400, random).virtual()
-    watched = Watched(level, nodes, DEFINITIONS, {} if definitions_only else rivals(nodes, 2.0))
-    watched.learn(drawn(before, old_history(level), nodes, random))
-    estimates = watched.follow(drawn(after, round(3 * level.half_life), nodes, random))
-    return {name: _outcome(seen, change) for name, seen in estimates.items()}
-
-
-def _outcome(seen: Floats, change: Change) -> _Outcome:
-    delays = delay(seen, change, EVERY)
-    return _Outcome(
-        float(delays.mean()),
-        float(delays.max()),
-        float(half_and_half(seen, change).sum(axis=0).mean() * EVERY),
-        float(error(seen[-1], change.new, change.even).mean()),
-        shows_new(seen, change)[..., change.changed].mean(axis=(1, 2)),
+    trial = Trial(
+        look(ROUND_ROOM, 400, random).virtual(),
+        look(world, 400, random).virtual(),
+        Change.between(ROUND_ROOM, world),
     )
+    others = {} if definitions_only else rivals(nodes, 2.0)
+    seen = trial.estimates(level, nodes, random, DEFINITIONS, others)
+    return {name: trial.outcome(estimates) for name, estimates in seen.items()}
 
 
-def _draw(found: dict[str, dict[str, _Outcome]], canvas: "Canvas") -> None:
+def _draw(found: dict[str, dict[str, Outcome]], canvas: "Canvas") -> None:
     for axes, (level, outcomes), half_life in zip(
         canvas.subplots(1, 2, sharey=True), found.items(), (MID.half_life, LONG.half_life), strict=True
     ):
