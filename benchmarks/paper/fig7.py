@@ -14,12 +14,12 @@ import numpy.typing as npt
 
 from benchmarks.paper.definitions import DEFINITIONS
 from benchmarks.paper.metrics import Change, half_and_half, shows_new
+from benchmarks.paper.rooms import arc
 from benchmarks.paper.scene import ANGLE_BINS, ROUND_ROOM, look
 from benchmarks.paper.section import Figure, Scale, Section, Table
 from benchmarks.paper.watched import LONG, Watched, drawn, old_history
 from benchmarks.paper.words import share
 from sample_logs.rays import Floats
-from sample_logs.world import outline_segments
 from timemap_cli.model.levels import Level
 from timemap_cli.model.virtual_scan import Ranges
 
@@ -76,7 +76,11 @@ def run(scale: Scale) -> Section:
             for level, one in found.items()
             for side, size, what in product(SIDES, hidden, ("mixed", "follows"))
         }
-        | {f"{level} median mixed": _mean(one["median per angle bin"].values(), "mixed") for level, one in found.items()},
+        | {
+            f"{level} median {side} mixed": _mean(_compared(one["median per angle bin"], side), "mixed")
+            for level, one in found.items()
+            for side in SIDES
+        },
     )
 
 
@@ -100,10 +104,8 @@ def measured(level: Level, cases: Sequence[_Case]) -> Outcomes:
 
 
 def _with_object(hidden: int) -> Floats:
-    """The room and an arc-shaped object, 1 m from the node and 0.15 m deep."""
-    angles = (_START + np.linspace(0, VISIBLE + hidden, 25)) * (2 * np.pi / ANGLE_BINS)
-    arc = np.stack((np.cos(angles), np.sin(angles)), axis=1)
-    return np.concatenate((ROUND_ROOM, outline_segments(np.concatenate((arc, 1.15 * arc[::-1])))))
+    """The room and an object 1 m from the node."""
+    return np.concatenate((ROUND_ROOM, arc(_START, _START + VISIBLE + hidden)))
 
 
 def _hidden(hidden: int, side: str, border: str, scans: int, random: np.random.Generator) -> npt.NDArray[np.bool_]:
@@ -138,22 +140,26 @@ def _outcome(seen: Floats, case: _Case, change: Change) -> _Outcome:
     return _Outcome(mixed, float(course[-1]), course)
 
 
-def _mean(outcomes: "Sequence[_Outcome]", what: str) -> float:
+def _mean(outcomes: Sequence[_Outcome], what: str) -> float:
     values = [getattr(outcome, what) for outcome in outcomes]
     return float(np.nanmean(values)) if not np.isnan(values).all() else float("nan")
 
 
 def _by_definition(found: dict[str, Outcomes]) -> Table:
-    header = ["hidden: 10, 20, 40"]
-    header += [f"{level}: {side} part in view, {what}" for level in found for side in SIDES for what in ("half-and-half", "follows")]
+    header = ["first part / last part in view"]
+    header += [f"{level}: {what}" for level in found for what in ("half-and-half", "follows")]
     rows = []
     for name in _NAMES:
         row = [name]
-        for one, side in product(found.values(), SIDES):
-            outcomes = [o for case, o in one[name].items() if case.side == side and case.hidden <= 40]
-            row += [share(_mean(outcomes, "mixed")), share(_mean(outcomes, "follows"))]
+        for one, what in product(found.values(), ("mixed", "follows")):
+            row.append(" / ".join(share(_mean(_compared(one[name], side), what)) for side in SIDES))
         rows.append(row)
-    return Table(header, rows)
+    return Table(header, rows, "10, 20 and 40 hidden angle bins, 4 to 20 full views:")
+
+
+def _compared(outcomes: dict[_Case, _Outcome], side: str) -> list[_Outcome]:
+    """With 40 full views a window of 40 has learnt the object before a part goes out of view."""
+    return [o for case, o in outcomes.items() if case.side == side and case.hidden <= 40 and case.views <= 20]
 
 
 def _by_case(level: str, outcomes: dict[_Case, _Outcome]) -> Table:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchmarks.paper.scene import ANGLE_BINS
 from sample_logs.rays import Floats
 from sample_logs.world import box, outline_segments
 
@@ -9,6 +10,13 @@ from sample_logs.world import box, outline_segments
 def with_boxes(world: Floats, *boxes: tuple[float, float, float, float, float]) -> Floats:
     """A world and boxes in it: x, y, length, width [m], turned by [degrees]."""
     return np.concatenate((world, *(outline_segments(box(*one)) for one in boxes)))
+
+
+def arc(start: float, stop: float, distance: float = 1.0) -> Floats:
+    """An arc-shaped object 0.15 m deep round the node, from one angle bin to another: it can be counted in bins."""
+    angles = np.linspace(start, stop, 25) * (2 * np.pi / ANGLE_BINS)
+    inside = distance * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+    return outline_segments(np.concatenate((inside, (1 + 0.15 / distance) * inside[::-1])))
 
 
 _WALLS = outline_segments(box(0.4, 0.2, 5.0, 4.0))
