@@ -14,7 +14,7 @@ from pathlib import Path
 
 from benchmarks.paper import experiments
 from benchmarks.paper.document import PICTURES, document, markdown, plain
-from benchmarks.paper.section import Scale
+from benchmarks.paper.section import Scale, Section
 
 _DOCS = Path(__file__).parents[2] / "docs"
 
@@ -39,9 +39,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if options.png:
             options.png.mkdir(parents=True, exist_ok=True)
         for file, content in done.pictures.items():
-            png = file.endswith(".png")
-            if png or scale is Scale.full:
-                (options.png if png else _DOCS / PICTURES).joinpath(file).write_bytes(content)
+            folder = options.png if file.endswith(".png") else _DOCS / PICTURES
+            if scale is Scale.full or folder == options.png:
+                folder.joinpath(file).write_bytes(content)
         sections[done.name] = done.markdown
     if scale is Scale.full:
         _write(sections)
@@ -72,12 +72,17 @@ def _finish(name: str, scale: Scale, png: bool) -> _Finished | None:
     section = experiments.run(name, scale)
     if section is None:
         return None
+    pictures = _pictures(section, png) if scale is Scale.full or png else {}
+    return _Finished(name, plain(section), markdown(section), pictures, time.perf_counter() - start)
+
+
+def _pictures(section: Section, png: bool) -> dict[str, bytes]:
     from benchmarks.paper.pictures import rendered, svg
 
     pictures = {f"{figure.name}.svg": svg(figure) for figure in section.figures}
     if png:
         pictures |= {f"{figure.name}.png": rendered(figure, "png") for figure in section.figures}
-    return _Finished(name, plain(section), markdown(section), pictures, time.perf_counter() - start)
+    return pictures
 
 
 def _write(sections: dict[str, str]) -> None:

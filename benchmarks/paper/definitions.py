@@ -63,6 +63,11 @@ def median(memory: Remembered) -> Ranges:
     return found
 
 
+def chosen(*names: str) -> dict[str, Definition]:
+    """Some of the definitions, by name."""
+    return {name: DEFINITIONS[name] for name in names}
+
+
 def _ageless(memory: Remembered) -> Remembered:
     return replace(memory, ages=np.zeros_like(memory.ages))
 

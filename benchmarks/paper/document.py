@@ -9,8 +9,8 @@ PICTURES = "pictures/paper"  # beside the document
 
 _HEAD = """# The paper's experiments
 
-Written by `make paper` (`python -m benchmarks.paper`), from simulated scans with fixed seeds: do not edit. What the words mean and how the method works stands in
-[method.md](method.md).
+Written by `make paper` (`python -m benchmarks.paper`), from simulated scans with fixed seeds: do not edit.
+What the words mean and how the method works stands in [method.md](method.md).
 """
 _SECTION = re.compile(r"<!-- (\w+) -->\n(.*?)(?=<!-- \w+ -->\n|\Z)", re.DOTALL)
 

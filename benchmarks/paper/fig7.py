@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from benchmarks.paper.definitions import DEFINITIONS
+from benchmarks.paper.definitions import chosen
 from benchmarks.paper.metrics import Change, half_and_half, shows_new
 from benchmarks.paper.rooms import arc
 from benchmarks.paper.scene import ANGLE_BINS, ROUND_ROOM, look
@@ -63,16 +63,34 @@ def run(scale: Scale) -> Section:
     return Section(
         "Fig. 7: the hidden part of an object",
         (
-            f"An object of {VISIBLE} angle bins in view, and 10 to 90 more that go out of view: it appears in a room known for five half-lives, is seen whole in 4 to 40 "
-            "scans, and then only its first part (in the direction of growing bearings) or its last, for four half-lives. The border of the view is fixed, or anywhere within 4 "
-            "angle bins. *Half-and-half*: of the estimates that show the part in view, the share in which the object is more than 10 % old and more than 10 % new. *Follows*: "
-            "share of the hidden angle bins that show the object at the end. Levels: window 40 and 100, every scan; long as in Fig. 6, which takes one scan in four: of four full "
+            f"An object of {VISIBLE} angle bins in view, and 10 to 90 more that go out of view: it appears in a "
+            "room known for five half-lives, is seen whole in 4 to 40 "
+            "scans, and then only its first part (in the direction of growing bearings) or its last, for four "
+            "half-lives. The border of the view is fixed, or anywhere within 4 "
+            "angle bins. *Half-and-half*: of the estimates that show the part in view, the share in which the "
+            "object is more than 10 % old and more than 10 % new. *Follows*: "
+            "share of the hidden angle bins that show the object at the end. Levels: window 40 and 100, every "
+            "scan; long as in Fig. 6, which takes one scan in four: of four full "
             "views one on average, sometimes none, and what was never seen no definition can know.",
         ),
         (_by_definition(found), *(_by_case(name, one["ours"]) for name, one in found.items())),
-        (Figure("fig7", "Share of the hidden angle bins that show the object, over scans since its part went out of view.", partial(_draw, found)),),
+        (
+            Figure(
+                "fig7",
+                "Share of the hidden angle bins that show the object, over scans since its part went out of view.",
+                partial(_draw, found),
+            ),
+        ),
         {
-            f"{level} {side} {size} {what}": float(np.nanmean([getattr(o, what) for case, o in one["ours"].items() if (case.side, case.hidden) == (side, size)]))
+            f"{level} {side} {size} {what}": float(
+                np.nanmean(
+                    [
+                        getattr(o, what)
+                        for case, o in one["ours"].items()
+                        if (case.side, case.hidden) == (side, size)
+                    ]
+                )
+            )
             for level, one in found.items()
             for side, size, what in product(SIDES, hidden, ("mixed", "follows"))
         }
@@ -95,11 +113,13 @@ def measured(level: Level, cases: Sequence[_Case]) -> Outcomes:
         key: whole[key[0]].hiding(_hidden(*key, 120, random)).virtual()
         for key in sorted({(c.hidden, c.side, c.border) for c in cases})
     }
-    watched = Watched(level, len(cases), {name: DEFINITIONS[name] for name in _NAMES})
+    watched = Watched(level, len(cases), chosen(*_NAMES))
     watched.learn(drawn(old, old_history(level) - max(VIEWS), len(cases), random))
     watched.learn(_views(old, full, cases, random))
     scans = round(4 * level.half_life / every) * every
-    part = np.stack([pools[c.hidden, c.side, c.border][random.integers(0, 120, scans)] for c in cases], axis=1)
+    part = np.stack(
+        [pools[c.hidden, c.side, c.border][random.integers(0, 120, scans)] for c in cases], axis=1
+    )
     return {name: _outcomes(seen, cases) for name, seen in watched.follow(part, every).items()}
 
 
@@ -108,7 +128,9 @@ def _with_object(hidden: int) -> Floats:
     return np.concatenate((ROUND_ROOM, arc(_START, _START + VISIBLE + hidden)))
 
 
-def _hidden(hidden: int, side: str, border: str, scans: int, random: np.random.Generator) -> npt.NDArray[np.bool_]:
+def _hidden(
+    hidden: int, side: str, border: str, scans: int, random: np.random.Generator
+) -> npt.NDArray[np.bool_]:
     """Angle bins (scans, ANGLE_BINS) out of view: those of the hidden part, and 3 beyond the object's end."""
     slack = random.integers(-2, 3, (scans, 1)) if border == "loose" else np.zeros((scans, 1), np.int64)
     place = np.arange(ANGLE_BINS)
@@ -117,7 +139,9 @@ def _hidden(hidden: int, side: str, border: str, scans: int, random: np.random.G
     return (place >= _START - 3) & (place < _START + hidden + slack)
 
 
-def _views(old: Ranges, full: dict[int, Ranges], cases: Sequence[_Case], random: np.random.Generator) -> Ranges:
+def _views(
+    old: Ranges, full: dict[int, Ranges], cases: Sequence[_Case], random: np.random.Generator
+) -> Ranges:
     """The last scans before the object goes out of view: of the old room first, then of the whole object."""
     found = drawn(old, max(VIEWS), len(cases), random)
     for node, case in enumerate(cases):
@@ -127,7 +151,9 @@ def _views(old: Ranges, full: dict[int, Ranges], cases: Sequence[_Case], random:
 
 
 def _outcomes(seen: Floats, cases: Sequence[_Case]) -> dict[_Case, _Outcome]:
-    changes = {hidden: Change.between(ROUND_ROOM, _with_object(hidden)) for hidden in {c.hidden for c in cases}}
+    changes = {
+        hidden: Change.between(ROUND_ROOM, _with_object(hidden)) for hidden in {c.hidden for c in cases}
+    }
     return {case: _outcome(seen[:, node], case, changes[case.hidden]) for node, case in enumerate(cases)}
 
 
@@ -166,8 +192,15 @@ def _by_case(level: str, outcomes: dict[_Case, _Outcome]) -> Table:
     sizes, views = sorted({case.hidden for case in outcomes}), sorted({case.views for case in outcomes})
     rows = []
     for size, side in product(sizes, SIDES):
-        cells = [[o for c, o in outcomes.items() if (c.hidden, c.side, c.views) == (size, side, n)] for n in views]
-        rows.append((f"{size} hidden, {side} part in view", *(f"{share(_mean(c, 'mixed'))} / {share(_mean(c, 'follows'))}" for c in cells)))
+        cells = [
+            [o for c, o in outcomes.items() if (c.hidden, c.side, c.views) == (size, side, n)] for n in views
+        ]
+        rows.append(
+            (
+                f"{size} hidden, {side} part in view",
+                *(f"{share(_mean(c, 'mixed'))} / {share(_mean(c, 'follows'))}" for c in cells),
+            )
+        )
     return Table((f"ours, {level}: half-and-half / follows", *(f"{n} full views" for n in views)), rows)
 
 

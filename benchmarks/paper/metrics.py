@@ -68,13 +68,13 @@ def half_and_half(estimates: Floats, change: Change) -> Bools:
     return mixed
 
 
-def runs(chosen: Bools, gap: int = 2) -> list[npt.NDArray[np.int64]]:
-    """Runs of neighbouring chosen angle bins round the circle, joined over at most `gap` others between them."""
+def runs(chosen: Bools) -> list[npt.NDArray[np.int64]]:
+    """Runs of neighbouring chosen angle bins, round the circle."""
     places = np.flatnonzero(chosen)
     if not len(places):
         return []
     steps = np.diff(places, append=places[0] + len(chosen))
-    ends = np.flatnonzero(steps > gap + 1)
+    ends = np.flatnonzero(steps > 1)
     if not len(ends):
         return [places]
     turned = np.roll(places, -(ends[-1] + 1))

@@ -35,13 +35,20 @@ def run(scale: Scale) -> Section:
         (name, str(taken), *(f"{percent(shown)} / {number(wrong, 3)}" for shown, wrong in levels.values()))
         for name, (taken, levels) in found.items()
     ]
-    header = ("", "scans of the night that passed", *(f"{level.name}: trolley shown / error [m]" for level in LEVELS))
+    header = (
+        "",
+        "scans of the night that passed",
+        *(f"{level.name}: trolley shown / error [m]" for level in LEVELS),
+    )
     return Section(
         "A robot parked for a night",
         (
-            f"A day of {_DAY:,} scans on the move, then a night of 8 hours at 5 Hz on one spot, with a trolley 1 m before the laser that came after the robot had parked and is gone in "
-            "the morning. What the default levels hold at the end of the night: share of the trolley's angle bins that show it, and the error against the room without it. The "
-            "short level takes every scan and shows the trolley, as it should. The night's scans are 300 different ones, over and over.",
+            f"A day of {_DAY:,} scans on the move, then a night of 8 hours at 5 Hz on one spot, with a trolley 1 "
+            "m before the laser that came after the robot had parked and is gone in "
+            "the morning. What the default levels hold at the end of the night: share of the trolley's angle "
+            "bins that show it, and the error against the room without it. The "
+            "short level takes every scan and shows the trolley, as it should. The night's scans are 300 "
+            "different ones, over and over.",
         ),
         (Table(header, rows),),
         (),

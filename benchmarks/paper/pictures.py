@@ -3,13 +3,14 @@
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure as Canvas
 
 from benchmarks.paper.section import Figure
 
-_STYLE = {
+_STYLE: Any = {
     "svg.hashsalt": "timemap",  # else the ids of clip paths are random
     "svg.fonttype": "none",
     "font.size": 9.0,

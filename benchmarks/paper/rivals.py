@@ -36,10 +36,12 @@ class LastScan:
         self._newest = np.full((nodes, ANGLE_BINS), UNSEEN, np.uint16)
 
     def learn(self, scans: Ranges) -> None:
+        """Learn n scans (n, nodes, angle_bins) [mm]."""
         for scan in scans:
             self._newest = np.where(scan != UNSEEN, scan, self._newest)
 
     def ranges(self) -> Ranges:
+        """What the map shows (nodes, angle_bins) [mm]."""
         return self._newest
 
 
@@ -73,12 +75,14 @@ class HitsByPasses(_Grid):
         self._visits = np.zeros_like(self._hits)
 
     def learn(self, scans: Ranges) -> None:
+        """Learn n scans (n, nodes, angle_bins) [mm]."""
         for scan in scans:
             hit, passed = self._hit_and_passed(scan)
             self._hits += hit
             self._visits += hit | passed
 
     def ranges(self) -> Ranges:
+        """What the map shows (nodes, angle_bins) [mm]."""
         return self._nearest((self._visits > 2) & (self._hits > np.float32(0.1) * self._visits))
 
 
@@ -90,12 +94,14 @@ class LogOdds(_Grid):
         self._odds = np.zeros((nodes, ANGLE_BINS, self._cells), np.float32)
 
     def learn(self, scans: Ranges) -> None:
+        """Learn n scans (n, nodes, angle_bins) [mm]."""
         for scan in scans:
             hit, passed = self._hit_and_passed(scan)
             self._odds += np.float32(0.85) * hit - np.float32(0.4) * passed
             np.clip(self._odds, -2.0, 3.5, out=self._odds)
 
     def ranges(self) -> Ranges:
+        """What the map shows (nodes, angle_bins) [mm]."""
         return self._nearest(self._odds > 0)
 
 
@@ -114,6 +120,7 @@ class MarkovChains(_Grid):
         self._events = {key: np.ones(shape, np.float32) for key in ("entry", "free", "exit", "taken")}
 
     def learn(self, scans: Ranges) -> None:
+        """Learn n scans (n, nodes, angle_bins) [mm]."""
         for scan in scans:
             hit, passed = self._hit_and_passed(scan)
             now = hit | passed
@@ -134,6 +141,7 @@ class MarkovChains(_Grid):
         self._events["taken"] += both & self._was_hit
 
     def ranges(self) -> Ranges:
+        """What the map shows (nodes, angle_bins) [mm]."""
         return self._nearest(self._observed & (self._belief > np.float32(0.5)))
 
 

@@ -22,7 +22,9 @@ def arc(start: float, stop: float, distance: float = 1.0) -> Floats:
 _WALLS = outline_segments(box(0.4, 0.2, 5.0, 4.0))
 
 # A room of 5 m by 4 m with a cabinet, a pillar and a desk on its side.
-OFFICE = with_boxes(_WALLS, (-1.3, 1.9, 1.2, 0.5, 0.0), (1.6, -1.2, 0.4, 0.4, 0.0), (-1.4, -1.3, 0.5, 1.0, 0.0))
+OFFICE = with_boxes(
+    _WALLS, (-1.3, 1.9, 1.2, 0.5, 0.0), (1.6, -1.2, 0.4, 0.4, 0.0), (-1.4, -1.3, 0.5, 1.0, 0.0)
+)
 
 # The same room without its wall at +x: there is nothing within reach.
 OPEN_OFFICE = np.delete(OFFICE, 1, axis=0)

@@ -37,7 +37,7 @@ class Scanner:
     def bearings(self) -> Floats:
         """(beams,) [rad] in the laser frame."""
         step = np.deg2rad(self.field_deg) / self.beams
-        return (np.arange(self.beams) - (self.beams - 1) / 2) * step
+        return np.asarray((np.arange(self.beams) - (self.beams - 1) / 2) * step)
 
 
 LASER = Scanner()
@@ -96,7 +96,7 @@ def poses(n: int, random: np.random.Generator, wander: float = 0.03) -> Floats:
 def look(
     segments: Floats, n: int, random: np.random.Generator, scanner: Scanner = LASER, at: Floats | None = None
 ) -> Scans:
-    """n scans of a still world of segments (m, 4); `at` gives the poses (n, 3), else it turns about."""
+    """N scans of a still world of segments (m, 4); `at` gives the poses (n, 3), else it turns about."""
     places = poses(n, random) if at is None else at
     laser = laser_poses(places, scanner)
     bearings = laser[:, 2:] + scanner.bearings
@@ -119,7 +119,8 @@ def measured(
 
 def truth(segments: Floats, node: tuple[float, float] = (0.0, 0.0)) -> Floats:
     """What the node would see, without noise: (ANGLE_BINS,) [m] the nearest in each angle bin; inf clear."""
-    return rays(segments, node).min(axis=1)
+    nearest: Floats = rays(segments, node).min(axis=1)
+    return nearest
 
 
 def rays(segments: Floats, node: tuple[float, float] = (0.0, 0.0)) -> Floats:

@@ -69,7 +69,7 @@ class Watched:
 
 
 def drawn(pool: Ranges, n: int, nodes: int, random: np.random.Generator) -> Ranges:
-    """n scans for each node (n, nodes, angle_bins), drawn from a pool (scans, angle_bins) of a still world."""
+    """N scans for each node (n, nodes, angle_bins), drawn from a pool (scans, angle_bins) of a still world."""
     return pool[random.integers(0, len(pool), (n, nodes))]
 
 

@@ -57,11 +57,13 @@ class _Tables:
         self._scores = scores
 
     def of_states(self, chosen: Ints) -> Ints:
+        """Scores (edges,) of the chosen states (rows,)."""
         here, there = self.edges.T
         found: Ints = self._scores[np.arange(len(here)), chosen[here], chosen[there]]
         return found
 
     def tables(self, edges: Ints) -> Ints:
+        """Scores (k, states, states) of these edges."""
         return self._scores[edges]
 
 
@@ -85,4 +87,5 @@ def _search(prior: Ints, tables: _Tables, states: States, memory: Remembered) ->
 
 
 def _log(probability: Floats) -> Ints:
-    return np.rint(np.log(np.maximum(probability, MISSING_EDGE)) * SCALE).astype(np.int64)
+    score: Ints = np.rint(np.log(np.maximum(probability, MISSING_EDGE)) * SCALE).astype(np.int64)
+    return score
