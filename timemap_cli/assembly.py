@@ -31,13 +31,18 @@ def observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
 def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations | None], Learnt]:
     """What learns from observations, and has learnt nothing yet; given `nodes` are known from the start."""
     time_map = TimeMap(
-        [_level(level) for level in settings.levels],
+        levels(settings),
         _estimator(settings),
         angle_bins=settings.map.angle_bins,
         seed=settings.seed,
         nodes=nodes,
     )
     return Learner(time_map, _schedule(settings)).take
+
+
+def levels(settings: Settings) -> list[Level]:
+    """The levels of a map, fastest first."""
+    return [_level(level) for level in settings.levels]
 
 
 def _level(level: LevelSettings) -> Level:
