@@ -1,5 +1,4 @@
-"""Does it matter where a surface stands? Old and new in the middle and on the edge of the paper's range "
-"bins."""
+"""Does it matter where a surface stands? Old and new in the middle and on the edge of the paper's range bins."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -80,8 +79,7 @@ def _times(level: Level, kind: str, nodes: int, names: tuple[str, ...]) -> _Time
 
 
 def _with_wall(old: float, new: float) -> tuple[Floats, Floats]:
-    """The room before and after a change from one range to another [m], the farther of which is the "
-    "wall."""
+    """The room before and after a change from one range to another [m], the farther of which is the wall."""
     wall, near = max(old, new), min(old, new)
     with_screen, without = np.concatenate((_arc(wall, 360), _arc(near, 60))), _arc(wall, 360)
     return (with_screen, without) if old < new else (without, with_screen)
@@ -113,8 +111,7 @@ def _switch_times(
 
 
 def _half_way(estimates: Floats, change: Change, every: int) -> float:
-    """Scans until half of the changed angle bins show the new state: mean over nodes; NaN if one never "
-    "does."""
+    """Scans until half of the changed angle bins show the new state: mean over nodes; NaN if one never does."""
     done = shows_new(estimates, change)[..., change.changed].mean(axis=2) >= 0.5
     times = np.where(done.any(axis=0), (done.argmax(axis=0) + 1.0) * every, np.nan)
     return float(times.mean())

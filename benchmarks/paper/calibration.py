@@ -111,16 +111,16 @@ def _judged(level: Level, nodes: int, scale: Scale) -> Judged:
         memory.remember(np.tile(np.arange(nodes), stop - start), stamps, block)
         found = estimate(memory.recall(np.arange(nodes)), STATE_WIDTH)
         known = found.support + 1 - found.plausibility
-        claims = (found.support, found.support / np.maximum(known, 1e-9), found.plausibility)
+        said = (found.support, found.support / np.maximum(known, 1e-9), found.plausibility)
         past = moments[:stop]
         weight = 0.5 ** (np.arange(stop)[::-1] / level.half_life)
         shown = metres(found.ranges)
         agreement = [
-            weight @ _agrees(shown[n], nearest[past[:, n]], farthest[past[:, n]]) / weight.sum()
+            weight @ agrees(shown[n], nearest[past[:, n]], farthest[past[:, n]]) / weight.sum()
             for n in range(nodes)
         ]
         sure = known > 0
-        parts.append([values[sure] for values in (*claims, np.array(agreement))])
+        parts.append([values[sure] for values in (*said, np.array(agreement))])
         start = stop
     *claims, agreed = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Judged(dict(zip(_QUANTITIES, claims, strict=True)), agreed)
@@ -148,8 +148,7 @@ def _pool(door_is_open: bool, place: tuple[float, float], n: int, random: np.ran
 
 
 def _history(n: int, pool: int, half_life: float, random: np.random.Generator) -> npt.NDArray[np.int64]:
-    """Moments (n,) of one run, as numbers into all pools: the door stays for some scans, the box for "
-    "longer."""
+    """Moments (n,) of one run, as numbers into all pools: the door stays for some scans, the box for longer."""
     share_open = random.uniform(0.1, 0.9)
     door, place = random.random() < share_open, int(random.integers(3))
     found = np.empty(n, np.int64)
@@ -162,7 +161,7 @@ def _history(n: int, pool: int, half_life: float, random: np.random.Generator) -
     return found
 
 
-def _agrees(shown: Floats, nearest: Floats, farthest: Floats) -> Floats:
+def agrees(shown: Floats, nearest: Floats, farthest: Floats) -> Floats:
     """Where an estimate (angle_bins,) is near to what was there at each moment (n, angle_bins)."""
     return np.asarray((shown >= nearest - _NEAR) & (shown <= farthest + _NEAR), np.float64)
 

@@ -108,8 +108,7 @@ class _Scene:
         return observed
 
     def scatter(self, surface: int, scans: int) -> None:
-        """Up to so many scans more, of each node another number: not all stand at the same place of a "
-        "turn."""
+        """Up to so many scans more, of each node another number: not all stand at the same place of a turn."""
         shown = np.linspace(0, scans, len(self._nodes)).round().astype(int)
         for node in range(1, len(shown)):
             self.show(surface, int(shown[node] - shown[node - 1]), node)

@@ -97,8 +97,7 @@ def counted(node: Followed, name: str) -> Counts:
 
 
 def differs(a: Ranges, b: Ranges) -> Bools:
-    """Where two arrays of ranges differ by more than the larger of 0.2 m and 3 %; clear is far behind "
-    "all."""
+    """Where two arrays of ranges differ by more than the larger of 0.2 m and 3 %; clear is far behind all."""
     here, there = a.astype(np.int64), b.astype(np.int64)
     return np.asarray(np.abs(here - there) > np.maximum(_STEP, _STEP_SHARE * np.minimum(here, there)))
 
@@ -123,7 +122,7 @@ def _objects(node: Followed, estimates: Ranges) -> tuple[int, int]:
     for before, after in pairwise(visits):
         old, new = _median(node.ranges[before]), _median(node.ranges[after])
         changed = (old < UNSEEN) & (new < UNSEEN) & differs(old, new)
-        for run in runs(changed, gap=0):
+        for run in runs(changed):
             for part in _coherent(run, old, new):
                 shown = estimates[after][:, part]
                 is_old = (~differs(shown, old[part]) & (shown < UNSEEN)).mean(axis=1)
@@ -154,9 +153,10 @@ def section(found: Mapping[str, Found]) -> Section:
     for building, counts in found.items():
         for (level, name), c in counts.items():
             flicker, half = c.returns / max(1, c.steps), c.halves / max(1, c.objects)
+            changes = number(100 * c.changes / max(1, c.steps), 2)
             rows.append(
                 (
-                    f"{building}: {level}, {name}", number(100 * c.changes / max(1, c.steps), 2), number(100 * flicker, 3),
+                    f"{building}: {level}, {name}", changes, number(100 * flicker, 3),
                     share(half) if c.objects else "-", percent(c.right / max(1, c.hits)),
                 )
             )  # fmt: skip
