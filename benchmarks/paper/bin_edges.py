@@ -34,7 +34,7 @@ _Times = dict[str, dict[tuple[str, str], float]]  # by definition, then by the p
 
 def run(scale: Scale) -> Section:
     """A curved screen of 60 degrees that appears, moves or is taken away, at the mid and the long level."""
-    nodes = scale.pick(10, 3)
+    nodes = scale.pick(6, 3)
     levels = scale.pick((MID, LONG), (MID,))
     kinds = scale.pick(tuple(_KINDS), ("appearing",))
     names = scale.pick(_COMPARED, _COMPARED[:2])

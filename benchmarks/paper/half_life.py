@@ -48,7 +48,7 @@ _YOUNG_HISTORIES = (30, 100, 180, 230, 300, 370, 550, 1385)
 
 def run(scale: Scale) -> Section:
     """Windows of 7 to 200 samples, half-lives of 5 to 2000 scans and of seconds to half a day."""
-    nodes = scale.pick(96, 16)
+    nodes = scale.pick(48, 16)
     cases = list(_cases(scale))
     found = [[measured(level, steps, seen, nodes) for seen in _VIEWS] for level, steps in cases]
     young = [(history, *_young(history, nodes)) for history in scale.pick(_YOUNG_HISTORIES, (30, 230))]

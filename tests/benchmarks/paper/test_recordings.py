@@ -1,7 +1,6 @@
 """What is counted on recordings without a truth: changes that are undone, and objects half old and half new."""
 
 import numpy as np
-import pytest
 
 from benchmarks.paper import recordings
 from benchmarks.paper.recorded import Followed
