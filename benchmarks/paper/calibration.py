@@ -29,7 +29,7 @@ _LEVELS = (Level("mid", 25, 20.0), Level("long", 100, 200.0))
 _LASER = Scanner(beams=480, field_deg=240.0)
 _NEAR = 0.1  # [m] how near an estimate must be to the true surface
 _SLICES = np.array([0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0])
-_QUANTITIES = ("support", "support / known", "plausibility")
+_QUANTITIES = ("support", "support / known", "plausibility", "mean of these two")
 
 _WALLS = np.array(
     [(-3, -2.5, 3, -2.5), (-3, -2.5, -3, 2.5), (-3, 2.5, 3, 2.5), (3, -2.5, 3, -0.6), (3, 0.6, 3, 2.5)], float
@@ -111,7 +111,8 @@ def _judged(level: Level, nodes: int, scale: Scale) -> Judged:
         memory.remember(np.tile(np.arange(nodes), stop - start), stamps, block)
         found = estimate(memory.recall(np.arange(nodes)), STATE_WIDTH)
         known = found.support + 1 - found.plausibility
-        said = (found.support, found.support / np.maximum(known, 1e-9), found.plausibility)
+        seen = found.support / np.maximum(known, 1e-9)
+        said = (found.support, seen, found.plausibility, (seen + found.plausibility) / 2)
         past = moments[:stop]
         weight = 0.5 ** (np.arange(stop)[::-1] / level.half_life)
         shown = metres(found.ranges)

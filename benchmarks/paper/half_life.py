@@ -48,7 +48,7 @@ _YOUNG_HISTORIES = (30, 100, 180, 230, 300, 370, 550, 1385)
 
 def run(scale: Scale) -> Section:
     """Windows of 7 to 200 samples, half-lives of 5 to 2000 scans and of seconds to half a day."""
-    nodes = scale.pick(48, 16)
+    nodes = scale.pick(32, 16)
     cases = list(_cases(scale))
     found = [[measured(level, steps, seen, nodes) for seen in _VIEWS] for level, steps in cases]
     young = [(history, *_young(history, nodes)) for history in scale.pick(_YOUNG_HISTORIES, (30, 230))]
@@ -130,6 +130,7 @@ def measured(level: Level, steps: _Steps, seen: float, nodes: int) -> Ratio:
     share = min(1.0, level.places_replaced(per_scan))
     scene.show(_OLD, math.ceil(_HISTORY * half_life))
     scene.scatter(_OLD, min(100, 2 * math.ceil(max(1 / share, min(12.0, 1 / (1.001 - share))))))
+    scene.show(_OLD, 1)  # ends the waiting of the nodes that were scattered first, which is observed time too
     passed, window, shown = [0.0], [0.0], [0.0]
     stride = max(1, round(half_life / _POINTS))
     while min(window[-1], shown[-1]) < 0.5 and passed[-1] < 3 * level.half_life:

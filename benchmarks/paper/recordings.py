@@ -166,8 +166,26 @@ def section(found: Mapping[str, Found]) -> Section:
             }
     header = ("", "changes [% of steps]", "flicker [% of steps]", "half-and-half", "next hits right")
     return Section(
-        "Real recordings: flicker and half objects", _SENTENCES, (Table(header, rows),), (), numbers
+        "Real recordings: flicker and half objects",
+        (*_SENTENCES, _verdict(found)),
+        (Table(header, rows),),
+        (),
+        numbers,
     )
+
+
+def _verdict(found: Mapping[str, Found]) -> str:
+    """Where the default shows more than the median per angle bin; the bar is nowhere."""
+    worse: dict[str, list[str]] = {"flicker": [], "half-and-half objects": []}
+    for building, counts in found.items():
+        for level in dict.fromkeys(level for level, _ in counts):
+            ours, median = counts[level, "ours"], counts[level, "median per angle bin"]
+            if ours.returns * median.steps > median.returns * ours.steps:
+                worse["flicker"].append(f"{building}, {level}")
+            if ours.halves * median.objects > median.halves * ours.objects:
+                worse["half-and-half objects"].append(f"{building}, {level}")
+    places = (f"{what}: {'; '.join(where) or 'nowhere'}" for what, where in worse.items())
+    return f"Where the default shows more than the median (bar: nowhere): {', '.join(places)}."
 
 
 _SENTENCES = (
