@@ -4,6 +4,7 @@
 # make check   ruff, mypy, import-linter
 # make bench   how fast a replay is beside plain reading
 # make changes-bench  how well changes are told in a simulated building whose changes are known
+# make paper   the paper's experiments: docs/paper.md and its figures
 # make clean   remove what the above made, except .venv
 
 VENV := .venv
@@ -14,7 +15,7 @@ SAMPLES := sample_logs/patrol_monday.mcap sample_logs/patrol_tuesday.bag sample_
 # The versions in constraints.txt hold for the tools that build the package, too.
 PIP_INSTALL := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
 
-.PHONY: setup demo test check bench changes-bench clean
+.PHONY: setup demo test check bench changes-bench paper clean
 .DELETE_ON_ERROR:
 
 setup: $(VENV)/timemap.stamp
@@ -40,6 +41,9 @@ bench: $(VENV)/timemap.stamp
 changes-bench: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.changes
 
+paper: $(VENV)/paper.stamp
+	$(BIN)/python -m benchmarks.paper
+
 clean:
 	rm -rf $(BUILD) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache *.egg-info
 	find timemap_cli tests sample_logs benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -50,6 +54,10 @@ $(VENV)/timemap.stamp: pyproject.toml constraints.txt $(BIN)/python
 
 $(VENV)/dev.stamp: $(VENV)/timemap.stamp
 	$(PIP_INSTALL) -e '.[dev]'
+	@touch $@
+
+$(VENV)/paper.stamp: $(VENV)/timemap.stamp
+	$(PIP_INSTALL) -e '.[paper]'
 	@touch $@
 
 # The first Python on the path that is new enough and can make an environment with pip in it.

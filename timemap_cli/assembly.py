@@ -33,7 +33,7 @@ def observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
 def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations | None], Learnt]:
     """What learns from observations, and has learnt nothing yet; given `nodes` are known from the start."""
     time_map = TimeMap(
-        [_level(level) for level in settings.levels],
+        levels(settings),
         _estimator(settings),
         angle_bins=settings.map.angle_bins,
         seed=settings.seed,
@@ -51,6 +51,11 @@ def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations
 def tracker(settings: Settings) -> Tracker:
     """What follows changes, and knows of none yet."""
     return Tracker([level.name for level in settings.levels], settings.map.radius)
+
+
+def levels(settings: Settings) -> list[Level]:
+    """The levels of a map, fastest first."""
+    return [_level(level) for level in settings.levels]
 
 
 def _level(level: LevelSettings) -> Level:

@@ -35,7 +35,7 @@ class MapSettings:
 
     angle_bins: int = setting(360, Number(12, 3600, whole=True), "equal sectors of the circle around a node")
     range_bin: float = setting(
-        0.1, Number(0.01, 1.0, "m"), "ranges within half of this are one surface; grows beyond 2.5 m"
+        0.1, Number(0.01, 1.0, "m"), "ranges within half of this are one surface; grows beyond 1.6 m"
     )
     # Ranges are remembered as millimetres in 16 bits, two of which are taken by clear and unknown.
     radius: float = setting(10.0, Number(0.5, 60.0, "m"), "how far a node looks; beyond is clear")

@@ -9,7 +9,7 @@ import math
 
 CLEAR = 10**9  # farther than everything
 FORBIDDEN, PRIOR, OLDEST = 100.0, 0.1, 1e-4
-BEND = 2500.0  # [mm] beyond, the scale on which surfaces are told apart shrinks with 1 / range
+BEND = 1600.0  # [mm] beyond, the scale on which surfaces are told apart shrinks with 1 / range
 
 
 class SlowMemory:
@@ -19,7 +19,7 @@ class SlowMemory:
         self.angle_bins, self.window, self.choose = angle_bins, window, choose
         self.samples = [[] for _ in range(angle_bins)]  # [range, missed then]
         self.pairs = [[] for _ in range(angle_bins)]  # (range here, range in the next angle bin)
-        self.missed = [0] * angle_bins  # scans taken that did not see the angle bin
+        self.missed = [0] * angle_bins  # scans that a full window took and that did not see the angle bin
         self.taken = 0
 
     def learn(self, scan):
@@ -28,7 +28,7 @@ class SlowMemory:
         for a, value in enumerate(scan):
             following = scan[(a + 1) % self.angle_bins]
             if value is None:
-                self.missed[a] += 1
+                self.missed[a] += self.taken > self.window
                 continue
             self._put(self.samples[a], [value, self.missed[a]])
             if following is not None:

@@ -35,24 +35,24 @@ def drawn(level, scans, *, step_s=0.1, nodes=None, block=None, keys=None, stamps
 
 def half_life_for(window, probability):
     """[scans] of a level that takes a scan with this probability."""
-    return -math.log(2) / math.log1p(-probability / window)
+    return math.log(2) / probability / math.log(window / (window - 1))
 
 
 def test_the_share_one_scan_replaces_follows_from_the_half_life():
-    """u = 1 - exp(-lambda), lambda = ln 2 / half-life, q = N u; the printed e^(lambda - 1) gives 0.38 here."""
-    level = Level("mid", 25, 20.0)
-    assert level.places_replaced(1.0) == pytest.approx(25 * (1 - 2 ** (-1 / 20)))
-    assert level.places_replaced(1.0) == pytest.approx(0.8516, abs=1e-4)
-    assert Level("long", 100, 200.0).places_replaced(1.0) == pytest.approx(0.3460, abs=1e-4)
+    """After a half-life n = q H scans were taken, and (1 - 1/N)^n of the window is left: a half."""
+    for window, half_life, share in ((7, 5.0, 0.8993), (25, 20.0, 0.8490), (100, 200.0, 0.3448)):
+        level = Level("level", window, half_life)
+        assert level.places_replaced(1.0) == pytest.approx(share, abs=1e-4)
+        assert (1 - 1 / window) ** (level.places_replaced(1.0) * half_life) == pytest.approx(0.5)
 
 
 def test_a_half_life_that_the_window_cannot_have_is_told_as_a_shortfall():
-    """100 places with a half-life of 30 s at one scan a second: 2.28 places are due, one can be filled."""
+    """100 places with a half-life of 30 s at one scan a second: 2.30 places are due, one can be filled."""
     draw = Draw(Level("long", 100, 30.0, in_seconds=True))
     draw.add_nodes(1)
     stamps_ns = np.arange(1, 501) * 1_000_000_000
     draw.taken(Groups.of(np.zeros(500, np.int64)), stamps_ns, np.array([7], np.uint64))
-    assert draw.shortfall == pytest.approx(1 - 1 / 2.284, abs=1e-3)
+    assert draw.shortfall == pytest.approx(1 - 1 / 2.299, abs=1e-3)
 
 
 def test_a_half_life_that_the_window_can_have_has_no_shortfall():
@@ -124,23 +124,22 @@ def test_every_node_draws_for_itself():
 def test_in_seconds_the_rate_of_scans_does_not_matter():
     level = Level(
         "level", 10, 60.0, in_seconds=True
-    )  # a tenth of the window each 9.12 s: q = 0.1149 a second
+    )  # a tenth of the window each 9.12 s: q = 0.1096 a second
     per_second = {}
     for rate in (5, 10, 40):
         taken = drawn(level, 600 * rate, step_s=1 / rate)
         per_second[rate] = taken[300 * rate :].sum() / 300
-    for rate, share in per_second.items():
-        assert share == pytest.approx(10 * -math.expm1(-math.log(2) / 60 / rate) * rate, abs=0.01)
-        assert share == pytest.approx(0.1155, abs=0.003)
+    for share in per_second.values():
+        assert share == pytest.approx(0.1096, abs=0.003)
 
 
 def test_a_long_absence_counts_for_ten_seconds():
-    """Visits of ten scans, a week apart: 0.34 + 9 * 0.0035 of a turn each; a week for a week would be 1."""
+    """Visits of ten scans, a week apart: 0.329 + 9 * 0.0033 of a turn each; a week for a week would be 1."""
     level = Level("level", 10, 200.0, in_seconds=True)
     steps = np.where(np.arange(6000) % 10 == 0, 7 * 86400.0, 0.1)
     taken = drawn(level, 6000, stamps=np.cumsum(steps * SECOND).astype(np.int64))
     assert LONGEST_STEP == 10.0
-    assert taken[3000:].sum() == pytest.approx(300 * 0.3722, abs=2)
+    assert taken[3000:].sum() == pytest.approx(300 * 0.3585, abs=2)
 
 
 def test_scans_with_one_stamp_take_no_time():

@@ -128,9 +128,24 @@ def test_a_border_of_the_view_that_never_moves_is_no_border_of_the_estimate():
 def test_support_and_plausibility_are_shares_of_the_window():
     scans = np.array([[2.0, 2.0, NAN]] * 6 + [[5.0, NAN, NAN]] * 2)
     result = found(scans, window=10)
-    assert result.support[0] == pytest.approx([6 / 8, 6 / 8 * 0.9**2 * 0 + 6 / 8 * 0.9**2, 0], abs=1e-5)
+    assert result.support[0] == pytest.approx([6 / 8, 6 / 8, 0], abs=1e-5)
     assert result.plausibility[0] == pytest.approx([6 / 8, 1, 1], abs=1e-5)
     assert result.samples[0].tolist() == [8, 6, 0]
+
+
+def test_what_a_full_level_no_longer_sees_loses_support_and_is_not_contradicted():
+    """The window of 10 is full after ten scans; of two more that do not see the angle bin each takes a tenth."""
+    result = found(np.array([[2.0, 2.0, NAN]] * 10 + [[2.0, NAN, NAN]] * 2), window=10)
+    assert result.support[0] == pytest.approx([1, 0.9**2, 0], abs=1e-5)
+    assert result.plausibility[0] == pytest.approx([1, 1, 1], abs=1e-5)
+
+
+def test_between_equal_shares_a_young_level_keeps_what_it_saw_first():
+    """The nearest would win at two scans and lose at three."""
+    far_first = [[4.0, 4.0, 4.0], [2.0, 2.0, 2.0], [4.0, 4.0, 4.0]]
+    for scans in (2, 3):
+        assert found(np.array(far_first[:scans]), window=10).ranges[0].tolist() == [4000] * 3
+    assert found(6.0 - np.array(far_first[:2]), window=10).ranges[0].tolist() == [2000] * 3
 
 
 def test_a_full_window_of_one_surface_has_all_the_support():

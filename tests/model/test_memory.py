@@ -127,11 +127,17 @@ def test_an_old_sample_goes_with_the_rate_of_its_window():
 
 
 def test_only_a_scan_that_did_not_see_the_angle_bin_ages_its_samples():
-    scans = [[1, 1], [1, NAN], [1, INF], [1, NAN], [1, NAN], [1, 2]]
+    scans = [[1, NAN]] * 3 + [[1, 1], [1, NAN], [1, INF], [1, NAN], [1, NAN], [1, 2]]
     memory = recalled(learnt(scans, 4))
     assert memory.ages[0, 0, :4].tolist() == [0, 0, 0, 0]  # however often it evicted or filled
     assert memory.ages[0, 1, :3].tolist() == [3, 2, 0]
-    assert memory.taken.tolist() == [6]
+    assert memory.taken.tolist() == [9]
+
+
+def test_while_the_window_fills_nothing_ages():
+    """A level that looked would have forgotten nothing either: each of its scans counts alike."""
+    memory = recalled(learnt([[1, 1], [1, NAN], [1, NAN], [1, 2], [1, NAN]], 4))
+    assert memory.ages[0, 1, :2].tolist() == [1, 1]  # the fifth scan alone
 
 
 def test_an_angle_bin_was_last_seen_in_the_newest_scan_that_shows_anything_there():

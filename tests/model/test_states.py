@@ -60,17 +60,18 @@ def test_clear_is_a_state_of_its_own():
     assert surfaces(INF, INF) == [[65534, 65534]]
 
 
-def test_beyond_two_and_a_half_metres_surfaces_are_wider_in_proportion():
-    assert len(surfaces(2.4, 2.452)) == 2
-    assert len(surfaces(5.0, 5.09)) == 1
-    assert len(surfaces(5.0, 5.12)) == 2
-    assert len(surfaces(10.0, 10.19)) == 1
-    assert len(surfaces(10.0, 10.22)) == 2
+def test_beyond_1_6_metres_surfaces_are_wider_in_proportion():
+    """Half of 10 cm at 1.6 m is a factor of exp(0.05 / 1.6) = 1.0317 beyond."""
+    assert len(surfaces(1.54, 1.592)) == 2
+    assert len(surfaces(5.0, 5.15)) == 1
+    assert len(surfaces(5.0, 5.17)) == 2
+    assert len(surfaces(9.5, 9.79)) == 1
+    assert len(surfaces(9.5, 9.82)) == 2
 
 
 def test_the_stretched_scale_is_even_up_to_the_bend_and_logarithmic_beyond():
-    assert [stretched(mm) for mm in (1000, 2500, 5000, 10_000)] == pytest.approx(
-        [1000, 2500, 4232.9, 5965.7], abs=0.1
+    assert [stretched(mm) for mm in (1000, 1600, 5000, 10_000)] == pytest.approx(
+        [1000, 1600, 3423.1, 4532.1], abs=0.1
     )
 
 

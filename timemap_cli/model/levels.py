@@ -11,8 +11,8 @@ class Level:
     """One time scale of memory: a window of samples, and the half-life after which half of it is replaced.
 
     The half-life counts scans of the node that reached the level, or seconds in which the node was observed.
-    A window of N samples of which one scan replaces the share u = 1 - exp(-lambda), lambda = ln 2 / half-life,
-    takes a scan with probability N * u.
+    Each scan that is taken replaces one of N samples, so n of them leave the share (1 - 1/N)^n of what was there.
+    A level that takes one scan of every 1/q keeps its half-life with q = (ln 2 / half-life) / -ln(1 - 1/N).
     """
 
     name: str
@@ -25,4 +25,4 @@ class Level:
 
         Up to 1 it is the probability with which the scan is taken; more than 1 cannot be had.
         """
-        return self.window * -math.expm1(-math.log(2) / self.half_life * step)
+        return step * math.log(2) / self.half_life / -math.log1p(-1 / self.window)

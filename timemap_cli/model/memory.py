@@ -27,7 +27,7 @@ class Remembered:
     """The memory of m nodes as the estimate reads it: as deep as the fullest angle bin; empty places are UNSEEN."""
 
     samples: Ranges  # (m, angle_bins, most samples) [mm]
-    ages: Counts  # (m, angle_bins, most samples) scans taken since, that did not see the angle bin
+    ages: Counts  # (m, angle_bins, most samples) scans since that did not see the angle bin, once the level was full
     left: Ranges  # (m, angle_bins, most pairs) [mm] a pair's range in this angle bin ...
     right: Ranges  # (m, angle_bins, most pairs) [mm] ... and in the next
     n_samples: Ints  # (m, angle_bins)
@@ -54,7 +54,7 @@ class Memory:
         self._stamps_ns = np.zeros(0, np.int64)  # the newest of them
         self._n_samples = np.zeros((0, angle_bins), np.uint32)
         self._n_pairs = np.zeros((0, angle_bins), np.uint32)
-        self._missed = np.zeros((0, angle_bins), np.uint32)  # scans taken that did not see the angle bin
+        self._missed = np.zeros((0, angle_bins), np.uint32)  # scans a full level took that did not see it
         self._last_seen_ns = np.zeros((0, angle_bins), np.int64)
         self._samples = np.zeros((0, angle_bins, level.window), np.uint16)
         self._missed_then = np.zeros((0, angle_bins, level.window), np.uint32)  # _missed when a sample came
@@ -105,15 +105,18 @@ class Memory:
         keys = chance.mixed(self._keys[nodes[order]], count)
         random = chance.mixed(keys[:, None], np.arange(ranges.shape[1]))
         seen = ranges != UNSEEN
-        self._store_samples(groups, ranges, seen, random)
+        forgets = count > self.level.window  # a window that still fills forgets nothing
+        self._store_samples(groups, ranges, seen, forgets, random)
         self._store_pairs(groups, ranges, seen, random << np.uint64(32))
         self._taken[row] = count  # ascending within a node: the last one stays
         self._stamps_ns[row] = stamps_ns[order]
         self._note_when_seen(groups, stamps_ns[order], seen)
         return changed
 
-    def _store_samples(self, groups: Groups, ranges: Ranges, seen: Bools, random: chance.Keys) -> None:
-        missed = groups.running_sums(~seen, self._missed)
+    def _store_samples(
+        self, groups: Groups, ranges: Ranges, seen: Bools, forgets: Bools, random: chance.Keys
+    ) -> None:
+        missed = groups.running_sums(~seen & forgets[:, None], self._missed)
         chosen = np.flatnonzero(seen)
         places = self._places(groups, seen, chosen, self._n_samples, random)
         self._samples.reshape(-1)[places] = ranges.take(chosen)

@@ -18,7 +18,7 @@ Bools = npt.NDArray[np.bool_]
 Stretched = npt.NDArray[np.int32]
 
 MAX_STATES = 24  # of one angle bin; on real recordings at most 20, the 99th percentile at most 10
-STRETCH_FROM = 2.5  # [m] beyond, surfaces may be farther apart in proportion to their range
+STRETCH_FROM = 1.6  # [m] beyond, surfaces may be farther apart in proportion to their range
 _UNIT = 1e-4  # [m] of the stretched scale
 _CLEAR_PLACE, _UNSEEN_PLACE = 1 << 22, 1 << 23  # on that scale, beyond every range
 

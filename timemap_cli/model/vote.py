@@ -46,10 +46,17 @@ def shares(memory: Remembered, states: States) -> Shares:
 
 
 def votes(memory: Remembered, states: States, share: Shares) -> Ints:
-    """Score of each state (rows, states): log of the share of the window that does not contradict it."""
+    """Score of each state (rows, states): log of the share of the window that does not contradict it.
+
+    Between equal shares the state of the sample at the first place wins. While the window fills that is the oldest;
+    later it is a random one that stays for a while. The nearest state would win at one scan and lose at the next.
+    """
     against = share.known[states.rows, None] - share.states
     scores = _whole(np.log(np.maximum(0.5 / memory.window, 1 - against)))
     scores[~states.exists] = IMPOSSIBLE
+    first = memory.samples.reshape(-1, memory.samples.shape[2])[states.rows, :1]
+    rows = np.flatnonzero(first[:, 0] < UNSEEN)
+    scores[rows, states.labels(first[rows], rows)[:, 0]] += 1
     return scores
 
 
