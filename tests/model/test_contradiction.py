@@ -62,7 +62,8 @@ def test_rows_that_were_never_set_contradict_nothing():
 
 def estimate(ranges, support, plausibility, samples):
     arrays = (np.array(values, np.float32) for values in (ranges, support, plausibility))
-    return Estimate(0, "long", 0, *arrays, np.array(samples, np.uint16))
+    rest = np.zeros(len(samples), np.uint8), np.zeros(len(samples), np.int64)
+    return Estimate(0, "long", 0, *arrays, np.array(samples, np.uint16), *rest)
 
 
 def test_ranges_are_firm_with_samples_enough_and_half_of_what_is_known():
