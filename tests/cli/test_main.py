@@ -77,6 +77,23 @@ def test_a_missing_argument_is_a_usage_error():
     assert ran.err == "error: missing argument 'LOG...'\n  try: timemap replay --help\n"
 
 
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["info", ""],
+        ["replay", "a.bag", ""],
+        ["replay", "a.bag", "-o", ""],
+        ["diff", "", "--level", "long", "mid"],
+    ]
+    + [["changes", ""], ["config", "--config", ""], ["replay", "a.bag", "--nodes", ""]],
+)
+def test_an_empty_name_is_not_the_current_folder(args):
+    ran = timemap(*args)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith("error: invalid value for '")
+    assert "the name is empty" in ran.err
+
+
 @pytest.mark.parametrize("code", list(ExitCode))
 def test_an_expected_failure_ends_with_its_own_exit_code(failing, code):
     failing(TimemapError("the scanner is upside down", hint="turn it", exit_code=code))

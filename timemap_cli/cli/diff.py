@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from timemap_cli.cli.level_words import spread_levels
+from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
 
@@ -21,7 +22,7 @@ class _LevelPairs(click.Command):
 
 
 @click.command(cls=_LevelPairs, short_help="what differs between two levels, two times or two results")
-@click.argument("results", nargs=-1, type=click.Path(path_type=Path), metavar="[RESULT] [OTHER]")
+@click.argument("results", nargs=-1, type=NAMED_PATH, metavar="[RESULT] [OTHER]")
 @click.option(
     "--level", "levels", multiple=True, metavar="LEVEL [LEVEL]", help="Two levels, or the one to look at."
 )

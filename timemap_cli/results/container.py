@@ -139,6 +139,17 @@ class ResultFile:
         )
 
 
+def is_result(path: Path) -> bool:
+    """Whether there is a result, as far as its own metadata tells; damaged ones are none."""
+    if not path.is_file():  # opening a pipe would wait for somebody to write
+        return False
+    try:
+        ResultFile(path).close()
+    except TimemapError:
+        return False
+    return True
+
+
 def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[tuple[str, bytes]]:
     """Messages of some channels in an unpacked chunk, found by stepping from record to record."""
     place = 0
