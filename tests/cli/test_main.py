@@ -83,9 +83,11 @@ def test_a_missing_argument_is_a_usage_error():
         ["info", ""],
         ["replay", "a.bag", ""],
         ["replay", "a.bag", "-o", ""],
+        ["replay", "a.bag", "--nodes", ""],
         ["diff", "", "--level", "long", "mid"],
-    ]
-    + [["changes", ""], ["config", "--config", ""], ["replay", "a.bag", "--nodes", ""]],
+        ["changes", ""],
+        ["config", "--config", ""],
+    ],
 )
 def test_an_empty_name_is_not_the_current_folder(args):
     ran = timemap(*args)

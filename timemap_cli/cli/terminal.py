@@ -39,7 +39,11 @@ class Terminal:
     def error(self, error: TimemapError) -> None:
         """Say what went wrong and, below it, what to try."""
         self.stderr.write(f"{self._painted('error:', _RED)} {error.message}\n")
-        for line in (error.hint or "").splitlines():
+        self.hint(error.hint)
+
+    def hint(self, lines: str | None) -> None:
+        """Say what to try, below what was said before; nothing where there is nothing to try."""
+        for line in (lines or "").splitlines():
             self.stderr.write(f"  try: {line}\n")
 
     def is_watched(self) -> bool:

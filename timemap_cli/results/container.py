@@ -79,6 +79,10 @@ class ResultFile:
             if chunk.message_start_time <= end_ns:
                 yield from self._messages_of(chunk, wanted, end_ns)
 
+    def times_ns(self, topic: str) -> tuple[int, ...]:
+        """Log times of the messages of a topic, in order."""
+        return self._guarded(lambda: tuple(m.log_time for _, _, m in self._reader.iter_messages([topic])))
+
     def last_message(self, topic: str) -> bytes | None:
         """The last message of a topic, found from the end of the file; None if there is none."""
         wanted = self._channels_of([topic])
