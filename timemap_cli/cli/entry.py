@@ -3,8 +3,6 @@
 import os
 import signal
 import sys
-from types import FrameType
-from typing import NoReturn
 
 
 class Interrupts:
@@ -27,12 +25,12 @@ class Interrupts:
         """Whether one has come."""
         return self._seen
 
-    def _interrupt(self, _signal: int, _frame: FrameType | None) -> NoReturn:
+    def _interrupt(self, _signal: int, _frame: object) -> None:
         self._seen = True
         raise KeyboardInterrupt
 
 
-def run() -> NoReturn:
+def run() -> None:
     """Run the program on the command line's words and end with its exit code."""
     interrupts = Interrupts()
     try:
