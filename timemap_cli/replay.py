@@ -21,6 +21,7 @@ from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.learner import Learnt, Round
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer
+from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
@@ -110,6 +111,11 @@ class _Observing:
     def damage(self) -> tuple[str, ...]:
         """What is wrong with the recordings, as far as read."""
         return tuple(f"{r.path}: {problem}" for r in self._recordings for problem in r.problems)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is odd about the recordings, while nothing of them is lost."""
+        return tuple(f"{r.path}: {remark}" for r in self._recordings for remark in r.remarks)
 
     def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Observations | None]:
         """Blocks of observations in stamp order; None where a recording has ended."""
@@ -205,9 +211,8 @@ def _summary(
     output: Path, settings: Settings, plan: Survey, observing: _Observing, writing: _Writing, seconds: float
 ) -> ReplaySummary:
     read, dropped = observing.counts.read, observing.counts.dropped
-    unwanted = sum(dropped.get(reason, 0) for reason in _NOT_LOST)
-    lost = sum(dropped.values()) - unwanted
-    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage)
+    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks)
+    too_many = _too_many_dropped(dropped, read, settings.input.max_dropped)
     return ReplaySummary(
         result=output,
         nodes=len(writing.nodes),
@@ -216,8 +221,26 @@ def _summary(
         scans_used=observing.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*warnings, *_other_warnings(observing, writing)),
-        data_lost=bool(observing.damage) or lost > settings.input.max_dropped * (read - unwanted),
+        warnings=(*warnings, *_profile_warnings(settings), *_other_warnings(observing, writing), *too_many),
+        data_lost=bool(observing.damage or too_many),
+    )
+
+
+def _too_many_dropped(dropped: Mapping[str, int], read: int, allowed: float) -> tuple[str, ...]:
+    """A warning where a larger share of the scans was lost than is allowed."""
+    lost = {reason: count for reason, count in sorted(dropped.items()) if count and reason not in _NOT_LOST}
+    wanted = read - sum(dropped.get(reason, 0) for reason in _NOT_LOST)
+    if sum(lost.values()) <= allowed * wanted:
+        return ()
+    share = f"{100 * sum(lost.values()) / wanted:.3g} % of the scans were dropped"
+    reasons = ", ".join(f"{reason} {count}" for reason, count in lost.items())
+    return (f"{share} ({reasons}), more than input.max_dropped allows ({100 * allowed:.3g} %)",)
+
+
+def _profile_warnings(settings: Settings) -> tuple[str, ...]:
+    found = overridden(settings)
+    return (
+        (f"profile {settings.profile} with other numbers than its own: {', '.join(found)}",) if found else ()
     )
 
 

@@ -27,6 +27,11 @@ def problems_after_reading(path: Path) -> str:
         return " / ".join(recording.problems)
 
 
+def remarks(path: Path) -> str:
+    with Recording(path) as recording:
+        return " / ".join(recording.remarks)
+
+
 def mcap(**options):
     return lambda folder, n=20: recorded.write_mcap(folder / "run.mcap", recorded.drive(ROS2, n), **options)
 
@@ -133,7 +138,8 @@ def test_unreadable_metadata_is_told_and_the_files_are_read(tmp_path):
     folder = split_folder(tmp_path)
     (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: {version: [")
     assert read(folder) == recorded.drive_rows(ROS2)
-    assert "metadata.yaml cannot be read" in problems_after_reading(folder)
+    assert "metadata.yaml cannot be read" in remarks(folder)
+    assert problems_after_reading(folder) == ""
 
 
 def test_folder_of_several_recordings_is_refused_and_they_are_named(tmp_path):
@@ -273,7 +279,25 @@ def test_bag_that_was_never_closed_is_read_whole(tmp_path):
     content[at : at + 8] = bytes(8)
     path.write_bytes(content)
     assert read(path) == recorded.drive_rows(ROS2)
-    assert "index is missing" in problems_after_reading(path)
+    assert "index is missing" in remarks(path)
+    assert problems_after_reading(path) == ""
+
+
+def test_a_bag_cut_off_in_its_only_chunk_gives_the_whole_messages_before(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "none", chunk_bytes=10**9)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    found, whole = read(path), recorded.drive_rows(ROS2, 200)
+    scans = ("scan", "/scan", "laser")
+    assert 80 < len(found[scans]) < 110
+    assert all(found[key] == whole[key][: len(found[key])] for key in found)
+    assert "it is cut off at byte" in problems_after_reading(path)
+    assert remarks(path) == ""
+
+
+def test_a_bag_cut_off_in_its_only_compressed_chunk_says_that_nothing_is_left(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "lz4", chunk_bytes=10**9)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    assert "no message comes whole before that" in problems_after_reading(path)
 
 
 @pytest.mark.parametrize("name", ["mcap", "mcap_lz4", "bag_bz2", "bag_lz4"])

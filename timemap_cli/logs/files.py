@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 
@@ -29,20 +30,29 @@ METADATA = "metadata.yaml"
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
 
-def open_files(path: Path, stack: ExitStack) -> tuple[list[Storage], list[str]]:
-    """The files of the recording at ``path``, in order of time, and what is wrong with them.
+@dataclass(frozen=True, slots=True)
+class OpenFiles:
+    """The files of a recording in order of time, what of them is missing, and what is odd but costs nothing."""
+
+    storages: Sequence[Storage]
+    problems: Sequence[str] = ()
+    remarks: Sequence[str] = ()
+
+
+def open_files(path: Path, stack: ExitStack) -> OpenFiles:
+    """Open the files of the recording at ``path``.
 
     ``stack`` closes them. Raises UsageError where there is no recording, and what the readers raise.
     """
     if path.is_dir():
-        paths, problems = _files_of_folder(path)
+        paths, problems, remarks = _files_of_folder(path)
     elif path.exists():
-        paths, problems = [path], []
+        paths, problems, remarks = [path], [], []
     else:
         raise UsageError(f"there is no file {path}")
     storages = [_open_file(one, stack) for one in paths]
     storages.sort(key=lambda storage: storage.start_ns)
-    return storages, problems
+    return OpenFiles(storages, problems, remarks)
 
 
 def _open_file(path: Path, stack: ExitStack) -> Storage:
@@ -95,14 +105,14 @@ def _decompressed(path: Path, stack: ExitStack) -> Path:
     return target
 
 
-def _files_of_folder(folder: Path) -> tuple[list[Path], list[str]]:
-    """The storage files of a bag folder: those its metadata names, or all where it has none."""
+def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
+    """The storage files of a bag folder, those its metadata names or all where it has none; problems and remarks."""
     try:
         names = _listed_names(folder / METADATA)
     except FileNotFoundError:
-        return _found_files(folder), []
+        return _found_files(folder), [], []
     except (YAMLError, UnicodeDecodeError, KeyError, TypeError):
-        return _found_files(folder), [f"{METADATA} cannot be read; all files beside it are"]
+        return _found_files(folder), [], [f"{METADATA} cannot be read; all files beside it are"]
     paths, problems = [], []
     for name in names:
         # Older rosbag2 names a compressed file without the suffix it gave it.
@@ -113,7 +123,7 @@ def _files_of_folder(folder: Path) -> tuple[list[Path], list[str]]:
             problems.append(f"{name} is missing, although {METADATA} names it")
     if not paths:
         raise UsageError(f"{folder} holds none of the files that its {METADATA} names")
-    return paths, problems
+    return paths, problems, []
 
 
 def _listed_names(metadata: Path) -> list[str]:

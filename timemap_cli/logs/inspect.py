@@ -171,7 +171,7 @@ class _LogReader:
         self._look_up(None)
         scans = tuple(statistics.outcome() for statistics in self._scans.values())
         poses_found = tuple(self._pose_infos())
-        problems = [*recording.problems, *self._pose_topic_problems()]
+        problems = [*recording.problems, *recording.remarks, *self._pose_topic_problems()]
         problems += [problem for statistics in self._scans.values() for problem in statistics.problems()]
         return LogInfo(
             path=str(recording.path),

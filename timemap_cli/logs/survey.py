@@ -7,6 +7,7 @@ from itertools import chain
 import numpy as np
 
 from timemap_cli.config import InputSettings, Settings
+from timemap_cli.errors import UsageError
 from timemap_cli.logs.batches import PoseBatch, ScanBatch
 from timemap_cli.logs.beams import Beams, settle
 from timemap_cli.logs.frames import Frames
@@ -61,7 +62,10 @@ def survey(recordings: Sequence[Recording], settings: Settings) -> Survey:
     UsageError where there are no scans or no poses, or several and none named; it lists lines to paste.
     """
     topics = topics_of(recordings)
-    candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+    try:
+        candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+    except UsageError as error:
+        raise _with_damage(error, recordings) from error
     return survey_sample(recordings, take_sample(recordings, candidates), candidates, settings)
 
 
@@ -82,6 +86,12 @@ def survey_sample(
             beams |= {key: b.ignoring_missing() for key, b in beams.items() if key[1] == topic}
     problems = _problems(recordings, sample, poses, selection) + _short_sighted(beams, settings)
     return Survey(selection, beams, missing, problems, _spans_ns(recordings, sample, selection))
+
+
+def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:
+    """The same error, and what is wrong with the recordings: that may be why."""
+    damage = "; ".join(f"{recording.path}: {one}" for recording in recordings for one in recording.problems)
+    return UsageError(f"{error.message} ({damage})", hint=error.hint) if damage else error
 
 
 def topics_of(recordings: Sequence[Recording]) -> dict[str, str]:
