@@ -69,6 +69,9 @@ class Inspection:
     logs: tuple[LogInfo, ...]
     selection: Selection | None  # None: a replay would end with `trouble`
     trouble: UsageError | None
+    span_ns: (
+        tuple[int, int] | None
+    )  # from the first scan to the last, by their stamps; None without a selection
     chains: tuple[tuple[str, ...], ...]  # frames from the map to each laser, where poses come from transforms
     missing_returns: dict[str, MissingReturns]  # of each selected topic
     no_return: str | None  # "clear" or "ignore"; None without a selection
@@ -108,6 +111,7 @@ def inspect_recordings(recordings: Sequence[Recording], settings: Settings) -> I
         logs=tuple(logs),
         selection=plan.selection if plan else None,
         trouble=trouble,
+        span_ns=plan.span_ns if plan else None,
         chains=_chains(seen, plan),
         missing_returns=dict(plan.missing_returns) if plan else {},
         no_return=plan.no_return if plan else None,
