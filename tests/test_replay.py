@@ -54,6 +54,9 @@ def test_a_replay_that_used_no_scan_fails_and_leaves_no_file(tmp_path):
     log = standing_log(tmp_path / "a.mcap")
     with pytest.raises(TimemapError, match="no scan could be used: outside_time 100"):
         replayed(tmp_path, log, start="+60s")
+    with pytest.raises(UsageError, match=r"outside_time 100 \(--start \+60s\)") as raised:
+        replayed(tmp_path, log, start="+60s")
+    assert raised.value.hint == "the recordings go from 2023-11-14T22:13:20Z to 2023-11-14T22:13:29.9Z"
     blind = standing_log(tmp_path / "b.mcap", hole=True)
     with pytest.raises(TimemapError, match="no scan could be used: node_not_seen 100"):
         replayed(tmp_path, blind)
@@ -124,6 +127,23 @@ def test_a_profile_with_other_numbers_is_told(tmp_path):
     assert replayed(tmp_path, log, settings=settings).warnings == (
         "profile paper with other numbers than its own: map.radius 4.0 instead of 1.5",
     )
+
+
+def test_a_map_frame_that_the_robot_carries_is_told(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    carried = replayed(tmp_path, log, settings=load(None, {"input": {"map_frame": "base_link"}}))
+    assert carried.warnings == (
+        "'laser' never moves in 'base_link': that frame moves with the robot, and so would the map",
+    )
+    assert replayed(tmp_path, log, force=True).warnings == ()
+
+
+def test_nodes_that_are_nowhere_near_are_named(tmp_path):
+    log, nodes = standing_log(tmp_path / "a.mcap"), tmp_path / "nodes.csv"
+    nodes.write_text("900 900\n")
+    with pytest.raises(UsageError, match=r"no_node 100 \(--nodes .*nodes\.csv: none is near") as raised:
+        replayed(tmp_path, log, nodes=nodes)
+    assert "'map'" in raised.value.hint
 
 
 def test_nodes_of_another_frame_are_refused(tmp_path):

@@ -84,7 +84,7 @@ def replay(
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
         summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
-        _require_some_use(summary)
+        _require_some_use(summary, plan, start=start, end=end, nodes=nodes)
         metadata = _metadata(settings, recordings, summary)
         changes = changes_document(writing.tracker.events, observing.newest_ns)
         result.finish(metadata, dump(settings), _report(plan, summary), changes)
@@ -244,14 +244,24 @@ def _profile_warnings(settings: Settings) -> tuple[str, ...]:
     )
 
 
-def _require_some_use(summary: ReplaySummary) -> None:
-    if not summary.scans_used:
-        reasons = (
-            ", ".join(f"{reason} {count}" for reason, count in summary.dropped.items()) or "there is none"
+def _require_some_use(
+    summary: ReplaySummary, plan: Survey, *, start: str | None, end: str | None, nodes: Path | None
+) -> None:
+    """UsageError where the options left no scan, TimemapError where none could be used."""
+    if summary.scans_used:
+        return
+    reasons = ", ".join(f"{reason} {count}" for reason, count in summary.dropped.items()) or "there is none"
+    message = f"no scan could be used: {reasons}"
+    if summary.dropped.keys() == {"outside_time"}:
+        cut = [f"{name} {time}" for name, time in (("--start", start), ("--end", end)) if time is not None]
+        raise UsageError(f"{message} ({' '.join(cut)})", hint=_span_hint(plan))
+    if nodes is not None and summary.dropped.keys() <= {"outside_time", "no_node"}:
+        frame = plan.selection.map_frame
+        raise UsageError(
+            f"{message} (--nodes {nodes}: none is near enough)",
+            hint=f"nodes where the robot drives, in metres of the frame '{frame}'",
         )
-        raise TimemapError(
-            f"no scan could be used: {reasons}", hint="timemap info LOG... tells what the recordings hold"
-        )
+    raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
 
 
 def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:

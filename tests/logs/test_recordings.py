@@ -224,6 +224,7 @@ def test_files_that_are_no_recording(tmp_path, content, message):
         Recording(path)
     assert str(path) in caught.value.message
     assert message in caught.value.message
+    assert caught.value.hint
 
 
 @pytest.mark.parametrize("magic", [b"#ROSBAG V2.0\n", b"\x89MCAP0\r\n", b"SQLite format 3\0"])
@@ -232,8 +233,27 @@ def test_files_that_only_begin_like_a_recording(tmp_path, magic):
     path.write_bytes(magic + bytes(range(100)))
     with pytest.raises(TimemapError, match="cannot be read: ") as caught:
         Recording(path)
+    assert "unpack" not in caught.value.message
     assert str(path) in caught.value.message
     assert caught.value.exit_code == ExitCode.FAILED
+
+
+@pytest.mark.parametrize("length", [9, 13, 20])
+def test_a_recording_cut_off_in_its_first_bytes_is_said_to_be(tmp_path, length):
+    path = FORMATS["mcap"][0](tmp_path)
+    path.write_bytes(path.read_bytes()[:length])
+    with pytest.raises(TimemapError, match="it is cut off or damaged"):
+        Recording(path)
+
+
+def test_a_file_of_a_folder_that_cannot_be_read_is_named(tmp_path):
+    folder = FORMATS["folder_mcap"][0](tmp_path)
+    (inner,) = folder.glob("*.mcap")
+    inner.unlink()
+    inner.mkdir()
+    with pytest.raises(TimemapError) as caught:
+        Recording(folder)
+    assert caught.value.message == f"{folder} cannot be read: {inner}: is a directory"
 
 
 def test_missing_file(tmp_path):

@@ -13,7 +13,7 @@ import zstandard
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.logs.bag_file import BagFile
 from timemap_cli.logs.mcap_file import McapFile
 from timemap_cli.logs.raw import Storage
@@ -26,6 +26,7 @@ READERS: dict[bytes, Callable[[Path], Storage]] = {
     b"\x89MCAP0\r\n": McapFile,
     b"SQLite format 3\0": SqliteFile,
 }
+READABLE = "a ROS 1 bag, a ROS 2 bag (its folder or a file of it) or an MCAP file"
 METADATA = "metadata.yaml"
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
@@ -49,7 +50,7 @@ def open_files(path: Path, stack: ExitStack) -> OpenFiles:
     elif path.exists():
         paths, problems, remarks = [path], [], []
     else:
-        raise UsageError(f"there is no file {path}")
+        raise no_such_file(path, READABLE)
     storages = [_open_file(one, stack) for one in paths]
     storages.sort(key=lambda storage: storage.start_ns)
     return OpenFiles(storages, problems, remarks)
@@ -93,7 +94,7 @@ def _refusal(path: Path, head: bytes) -> TimemapError:
             hint="convert it with ROS 1: rosbag fix OLD.bag NEW.bag",
         )
     reason = "it is empty" if not head else "it is neither a ROS 1 bag nor a ROS 2 bag nor an MCAP file"
-    return UsageError(f"{path} is not a recording: {reason}")
+    return UsageError(f"{path} is not a recording: {reason}", hint=READABLE)
 
 
 def _decompressed(path: Path, stack: ExitStack) -> Path:
@@ -136,7 +137,7 @@ def _found_files(folder: Path) -> list[Path]:
     heads = {one: _head(one) for one in sorted(folder.iterdir()) if one.is_file()}
     paths = [one for one, head in heads.items() if head.startswith(ZSTD_MAGIC) or _reader(head)]
     if not paths:
-        raise UsageError(f"{folder} holds no recording")
+        raise UsageError(f"{folder} holds no recording", hint=READABLE)
     if len({_stem(one) for one in paths}) > 1:
         raise UsageError(
             f"{folder} holds several recordings; name those you want",

@@ -229,7 +229,8 @@ class _LogReader:
 
     def _pose_topic_problems(self) -> list[str]:
         found = [
-            f"{topic}: {count} messages {reason}" for (topic, reason), count in sorted(self._bad.items())
+            f"{topic}: {count} {'message' if count == 1 else 'messages'} {reason}"
+            for (topic, reason), count in sorted(self._bad.items())
         ]
         rejected = max((source.rejected for source in self._sources.values()), default=0)
         if rejected:

@@ -134,7 +134,7 @@ def open_recordings(paths: Sequence[Path]) -> list[Recording]:
     try:
         for path in paths:
             if any(path.resolve() == other.path.resolve() for other in recordings):
-                raise UsageError(f"{path} is given twice")
+                raise UsageError(f"{path} is given twice", hint="name each recording once")
             recordings.append(Recording(path))
     except BaseException:
         for recording in recordings:
@@ -151,5 +151,14 @@ def _translated(path: Path) -> Iterator[None]:
     except TimemapError:
         raise
     except FOREIGN_ERRORS as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise TimemapError(f"{path} cannot be read: {reason or type(error).__name__}") from error
+        raise TimemapError(f"{path} cannot be read: {_reason(error, path)}") from error
+
+
+def _reason(error: Exception, path: Path) -> str:
+    """What went wrong, in words for who does not know the library; the file, where it is one of a folder."""
+    if isinstance(error, OSError) and error.strerror:
+        within = error.filename if error.filename and Path(error.filename) != path else None
+        return f"{within}: {error.strerror.lower()}" if within else error.strerror.lower()
+    if isinstance(error, AssertionError | EOFError | KeyError | struct.error) or not str(error):
+        return "its parts do not fit together; it is cut off or damaged"
+    return str(error)

@@ -15,7 +15,7 @@ from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
 from mcap.summary import Summary
 from zstandard import ZstdError
 
-from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.results import channels
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -173,7 +173,7 @@ def _open(path: Path) -> BinaryIO:
     try:
         stream = path.open("rb")
     except FileNotFoundError as error:
-        raise UsageError(f"there is no file {path}") from error
+        raise no_such_file(path, "results are made by `timemap replay`") from error
     except OSError as error:
         raise _unreadable(path, error) from error
     head = stream.read(16)

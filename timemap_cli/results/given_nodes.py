@@ -3,7 +3,7 @@
 import math
 from pathlib import Path
 
-from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.model.nodes import Node
 from timemap_cli.results.reader import ResultReader
 
@@ -22,7 +22,7 @@ def read_nodes(path: Path, map_frame: str) -> tuple[Node, ...]:
     except OSError as error:
         raise TimemapError(f"cannot read {path}: {error.strerror}") from error
     if data is None:
-        raise UsageError(f"there is no file {path}", hint="--nodes NODES.csv, or an earlier result")
+        raise no_such_file(path, "--nodes NODES.csv, or an earlier result")
     if data.startswith(_MCAP_MAGIC):
         with ResultReader(path) as result:
             if result.map_frame != map_frame:
