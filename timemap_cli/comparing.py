@@ -124,13 +124,20 @@ def _beyond(reader: ResultReader, result: Path, stamp_ns: int) -> tuple[str, ...
 
 
 def _two_times(reader: ResultReader, result: Path, level: str) -> str:
-    """A comparison of two times to paste: the ends of the first and the last recording, if there are two."""
-    ends_ns = reader.recording_ends_ns
+    """A comparison of two times to paste that compares something; in words, where none is found."""
+    ends_ns = reader.recording_ends_ns or (reader.end_ns,)
+    middle_ns = (reader.start_ns + reader.end_ns) // 2 // 10**9 * 10**9
+    for earlier_ns, later_ns in ((ends_ns[0], ends_ns[-1]), (middle_ns, reader.end_ns)):
+        if earlier_ns < later_ns and _any_renewed(reader, level, earlier_ns, later_ns):
+            times = f"{format_time(earlier_ns)} {format_time(later_ns)}"
+            return f"timemap diff {result} --level {level} --between {times}"
     first, last = map(format_time, (reader.start_ns, reader.end_ns))
-    if len(ends_ns) < 2:
-        return f"--level {level} --between TIME TIME; the first estimates are of {first}, the last of {last}"
-    first_end, last_end = format_time(ends_ns[0]), format_time(ends_ns[-1])
-    return f"timemap diff {result} --level {level} --between {first_end} {last_end}"
+    return f"--level {level} --between TIME TIME; the first estimates are of {first}, the last of {last}"
+
+
+def _any_renewed(reader: ResultReader, level: str, earlier_ns: int, later_ns: int) -> bool:
+    before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
+    return any(after[node].stamp_ns > known.stamp_ns for node, known in before.items())
 
 
 def _require_same_map(old_path: Path, old: ResultReader, new_path: Path, new: ResultReader) -> None:

@@ -191,10 +191,19 @@ def test_where_nothing_was_seen_again_the_ends_of_the_recordings_are_proposed(tm
     assert [change["kind"] for change in found["changes"]] == ["appeared"]
 
 
-def test_of_a_single_recording_the_span_of_the_estimates_is_named(result):
+def test_of_a_single_recording_its_middle_and_its_end_are_proposed(result):
     ran = timemap("diff", result, "--level", "mid", "--between", "start", "start")
+    (proposed,) = proposals(ran)
+    assert proposed.endswith("--level mid --between 2023-11-14T22:13:30Z 2023-11-14T22:13:40Z")
+    found = document(*proposed.removeprefix("timemap diff ").split())
+    assert [change["kind"] for change in found["changes"]] == ["appeared"]
+
+
+def test_where_no_node_was_ever_seen_again_the_span_of_the_estimates_is_named(tmp_path):
+    result = write(tmp_path / "once.mcap", [(20, all_levels(False))], ends=(20,))
+    ran = timemap("diff", result, "--level", "mid", "--between", "start", "end")
     assert proposals(ran) == [
-        "--level mid --between TIME TIME; the first estimates are of 2023-11-14T22:13:20Z, "
+        "--level mid --between TIME TIME; the first estimates are of 2023-11-14T22:13:40Z, "
         "the last of 2023-11-14T22:13:40Z"
     ]
 
