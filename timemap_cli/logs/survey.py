@@ -238,7 +238,9 @@ def _carried(seen: Seen, sample: Sample, selection: Selection) -> tuple[str, ...
     if selection.pose != TF or not seen.frames.roots_of(selection.map_frame):
         return ()
     fixed = {frozenset((batch.parent, batch.child)) for batch in sample.static_transforms}
-    lasers = dict.fromkeys(frame for topic in selection.scan_topics for frame in seen.scan_frames.get(topic, ()))
+    lasers = dict.fromkeys(
+        frame for topic in selection.scan_topics for frame in seen.scan_frames.get(topic, ())
+    )
     chains = {laser: seen.frames.path(selection.map_frame, laser) for laser in lasers}
     return tuple(
         f"'{laser}' never moves in '{selection.map_frame}': that frame moves with the robot, and so would the map"
