@@ -3,6 +3,7 @@
 # make test    the tests
 # make check   ruff, mypy, import-linter
 # make bench   how fast a replay is beside plain reading
+# make changes-bench  how well changes are told in a simulated building whose changes are known
 # make clean   remove what the above made, except .venv
 
 VENV := .venv
@@ -13,7 +14,7 @@ SAMPLES := sample_logs/patrol_monday.mcap sample_logs/patrol_tuesday.bag sample_
 # The versions in constraints.txt hold for the tools that build the package, too.
 PIP_INSTALL := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
 
-.PHONY: setup demo test check bench clean
+.PHONY: setup demo test check bench changes-bench clean
 .DELETE_ON_ERROR:
 
 setup: $(VENV)/timemap.stamp
@@ -35,6 +36,9 @@ check: $(VENV)/dev.stamp
 
 bench: $(VENV)/timemap.stamp
 	$(BIN)/python benchmarks/replay_hour.py
+
+changes-bench: $(VENV)/timemap.stamp
+	$(BIN)/python -m benchmarks.changes
 
 clean:
 	rm -rf $(BUILD) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache *.egg-info

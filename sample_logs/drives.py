@@ -47,6 +47,7 @@ class Drive:
     laser_frame: str = "laser"
     error_m: float = 0.012
     error_rad: float = 0.003
+    map_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m, m, rad] by which all poses are wrong
 
     def events(self) -> Iterator[Event]:
         """All messages in log order."""
@@ -98,6 +99,7 @@ class Drive:
         times = self._times(self.rates.localisation, rng, 0.002)
         true = self.motion.at(times)
         believed = compose(true, localisation_errors(true, rng, self.error_m, self.error_rad))
+        believed = compose(np.array(self.map_offset), believed)
         counted_times, counted = self._counted()
         map_from_odom = compose(believed, invert(Motion(counted_times, counted).at(times)))
         for time, pose in zip(times.tolist(), map_from_odom, strict=True):

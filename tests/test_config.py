@@ -41,7 +41,9 @@ def test_the_defaults_are_those_that_served_best_on_real_recordings():
         ("mid", 25, "20obs"),
         ("long", 100, "200obs"),
     ]
-    assert settings.gate == GateSettings(min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.15)
+    assert settings.gate == GateSettings(
+        min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.15, max_contradiction=0.75
+    )
     assert settings.estimate.every == Span(30.0, "s")
     assert settings.input == InputSettings((), "map", "auto", "auto", 0.05)
     assert (settings.seed, settings.profile) == (0, "default")
@@ -95,7 +97,10 @@ def test_an_unknown_key_names_the_nearest_known_one(overrides, unknown, nearest)
 
 
 def test_an_unknown_key_far_from_all_others_lists_those_of_its_place():
-    assert refusal({"gate": {"qqqq": 1}}).hint == "one of min_travel, min_turn_deg, min_interval"
+    assert (
+        refusal({"gate": {"qqqq": 1}}).hint
+        == "one of min_travel, min_turn_deg, min_interval, max_contradiction"
+    )
 
 
 def test_a_file_is_named_in_what_is_said_about_it(tmp_path):
@@ -114,6 +119,7 @@ def test_a_file_is_named_in_what_is_said_about_it(tmp_path):
         ("map", "node_spacing", 0.1, 20.0, " m"),
         ("gate", "min_travel", 0.0, 100.0, " m"),
         ("gate", "min_turn_deg", 0.0, 180.0, " deg"),
+        ("gate", "max_contradiction", 0.5, 1.0, ""),
         ("input", "max_dropped", 0.0, 1.0, ""),
     ],
 )
@@ -212,11 +218,11 @@ def test_levels_have_different_names_and_come_fastest_first():
     assert error.hint == "list the levels fastest first"
 
 
-def test_the_paper_profile_has_the_numbers_of_the_paper_and_no_gate():
+def test_the_paper_profile_has_the_numbers_of_the_paper_no_gate_and_no_guard():
     settings = load(None, {"profile": "paper"})
     assert settings.map.angle_bins == 360
     assert settings.map.range_bin * 20 == pytest.approx(settings.map.radius) == 1.5
-    assert settings.gate == GateSettings(0.0, 0.0, 0.0)
+    assert settings.gate == GateSettings(0.0, 0.0, 0.0, max_contradiction=1.0)
     assert settings.profile == "paper"
 
 
@@ -301,7 +307,12 @@ def any_settings(draw):
     settings = Settings(
         map=MapSettings(draw(st.integers(12, 3600)), draw(st.floats(0.01, 1)), draw(st.floats(0.5, 60))),
         levels=(LevelSettings(draw(level_names), 2, Span(draw(st.floats(0.5, 1e9)), "s")),),
-        gate=GateSettings(draw(st.floats(0, 100)), draw(st.floats(0, 180)), draw(st.floats(0, 86400))),
+        gate=GateSettings(
+            draw(st.floats(0, 100)),
+            draw(st.floats(0, 180)),
+            draw(st.floats(0, 86400)),
+            draw(st.floats(0.5, 1)),
+        ),
         input=InputSettings(
             tuple(dict.fromkeys(draw(st.lists(names, max_size=3)))),
             draw(names.filter(lambda text: not text.startswith("/"))),

@@ -18,6 +18,7 @@ def test_default_numbers_in_a_file_override_those_of_the_paper(tmp_path):
         "gate.min_travel 0.05 instead of 0.0",
         "gate.min_turn_deg 5.0 instead of 0.0",
         "gate.min_interval 0.15s instead of 0s",
+        "gate.max_contradiction 0.75 instead of 1.0",
     ]
 
 

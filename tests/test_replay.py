@@ -13,13 +13,14 @@ DAY_NS = 86_400_000_000_000
 BEARINGS = np.radians(np.arange(-60.0, 61.0))
 STILL = (0, 0, 0, 1)
 SETTINGS = load(None)
+NO_GATE = {"min_travel": 0, "min_turn_deg": 0, "min_interval": "0s"}
 
 
-def standing_log(path, n_scans=100, start_ns=START_NS, log_later_ns=0, world="map", hole=False):
+def standing_log(path, n_scans=100, start_ns=START_NS, log_later_ns=0, world="map", hole=False, wall=2.0):
     """Ten scans a second of a wall 2 m away, and nothing moves."""
     mount = transforms(ROS2, (start_ns, "base_link", "laser", (0, 0, 0.2, *STILL)))
     messages = [Message("/tf_static", start_ns + log_later_ns, mount)]
-    ranges = np.full_like(BEARINGS, np.nan) if hole else 2 / np.cos(BEARINGS)
+    ranges = np.full_like(BEARINGS, np.nan) if hole else wall / np.cos(BEARINGS)
     for i in range(n_scans):
         now, log_ns = start_ns + i * 100_000_000, start_ns + i * 100_000_000 + log_later_ns
         messages.append(
@@ -79,9 +80,7 @@ def test_a_half_life_that_the_window_cannot_keep_is_told(tmp_path):
         "window": 100,
         "half_life": "1s",
     }  # 7 places of the window each scan, and 1 can be had
-    settings = load(
-        None, {"levels": [level], "gate": {"min_travel": 0, "min_turn_deg": 0, "min_interval": "0s"}}
-    )
+    settings = load(None, {"levels": [level], "gate": NO_GATE})
     found = replayed(tmp_path, log, settings=settings).warnings
     assert [w for w in found if "level slow forgets more slowly than its half-life says" in w]
     assert not replayed(tmp_path, log, force=True).warnings
@@ -144,6 +143,22 @@ def test_nodes_that_are_nowhere_near_are_named(tmp_path):
     with pytest.raises(UsageError, match=r"no_node 100 \(--nodes .*nodes\.csv: none is near") as raised:
         replayed(tmp_path, log, nodes=nodes)
     assert "'map'" in raised.value.hint
+
+
+def test_scans_that_contradict_what_was_long_held_are_counted_as_lost_and_told(tmp_path):
+    logs = [
+        standing_log(tmp_path / "a.mcap"),
+        standing_log(tmp_path / "b.mcap", start_ns=START_NS + DAY_NS, wall=4.0),
+    ]
+    summary = replayed(tmp_path, *logs, settings=load(None, {"gate": NO_GATE}))
+    assert (summary.scans_read, summary.scans_used, summary.dropped) == (200, 100, {"lost": 100})
+    assert summary.data_lost
+    assert [
+        w for w in summary.warnings if "100 scans contradict nearly all that their place has long been" in w
+    ]
+    off = load(None, {"gate": NO_GATE | {"max_contradiction": 1}})
+    summary = replayed(tmp_path, *logs, settings=off, force=True)
+    assert (summary.scans_used, summary.dropped, summary.warnings) == (200, {}, ())
 
 
 def test_nodes_of_another_frame_are_refused(tmp_path):

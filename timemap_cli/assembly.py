@@ -8,6 +8,7 @@ from timemap_cli.changes.tracker import Tracker
 from timemap_cli.config import LevelSettings, Settings
 from timemap_cli.model.estimator import Estimator, estimate
 from timemap_cli.model.gate import Gate
+from timemap_cli.model.guard import Guard
 from timemap_cli.model.learner import Learner, Learnt
 from timemap_cli.model.levels import Level
 from timemap_cli.model.nodes import Node
@@ -38,7 +39,13 @@ def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations
         seed=settings.seed,
         nodes=nodes,
     )
-    return Learner(time_map, _schedule(settings)).take
+    guard = Guard(
+        settings.gate.max_contradiction,
+        angle_bins=settings.map.angle_bins,
+        radius=settings.map.radius,
+        window=settings.levels[-1].window,
+    )
+    return Learner(time_map, guard, _schedule(settings)).take
 
 
 def tracker(settings: Settings) -> Tracker:

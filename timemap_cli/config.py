@@ -59,12 +59,16 @@ class LevelSettings:
 
 @dataclass(frozen=True, slots=True)
 class GateSettings:
-    """When a slower level takes a scan: moved or turned enough since its last one, and time has passed."""
+    """When a slower level takes a scan: moved or turned enough, and time has passed; and what no level takes."""
 
     min_travel: float = setting(0.05, Number(0.0, 100.0, "m"), "moved at least so far, or")
     min_turn_deg: float = setting(5.0, Number(0.0, 180.0, "deg"), "turned at least so far; and")
     # Below a 5 Hz scanner's period: at 0.2 s its jitter would let every other scan fail.
     min_interval_s: float = setting(0.15, Seconds(0.0, 86400.0), "this time has passed", key="min_interval")
+    # Poses off by half a metre and more reach it, furniture that was moved does not.
+    max_contradiction: float = setting(
+        0.75, Number(0.5, 1.0), "a scan that contradicts so much of a place is of a lost robot; 1: off"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,12 +193,12 @@ def _profile(layers: list[tuple[str, Mapping[str, Any]]]) -> str:
 
 
 def _defaults(profile: str) -> Settings:
-    """The defaults of a profile; `paper` has the numbers of the paper's experiments and no gate."""
+    """The defaults of a profile; `paper` has the numbers of the paper's experiments, no gate and no guard."""
     if profile == "default":
         return Settings()
     return Settings(
         map=MapSettings(angle_bins=360, range_bin=0.075, radius=1.5),
-        gate=GateSettings(min_travel=0.0, min_turn_deg=0.0, min_interval_s=0.0),
+        gate=GateSettings(min_travel=0.0, min_turn_deg=0.0, min_interval_s=0.0, max_contradiction=1.0),
         profile=profile,
     )
 

@@ -80,6 +80,7 @@ def replay(
         writing = _Writing(result, assembly.tracker(settings))
         steps = observing.steps(*_span_ns(plan, start, end))
         for learnt in stack.enter_context(closing(mapped(learning, steps))):
+            observing.set_aside(learnt.lost)
             writing.take(learnt, observing.nodes)
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
@@ -116,6 +117,11 @@ class _Observing:
     def remarks(self) -> tuple[str, ...]:
         """What is odd about the recordings, while nothing of them is lost."""
         return tuple(f"{r.path}: {remark}" for r in self._recordings for remark in r.remarks)
+
+    def set_aside(self, scans: int) -> None:
+        """Take note that so many of the scans seen were not learnt."""
+        self.used -= scans
+        self.counts.drop("lost", scans)
 
     def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Observations | None]:
         """Blocks of observations in stamp order; None where a recording has ended."""
@@ -270,6 +276,11 @@ def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
     for level, shortfall in writing.shortfalls.items():
         if shortfall > 0.1:
             yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
+    if lost := observing.counts.dropped.get("lost"):
+        yield (
+            f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
+            "lost, or the place is another one now (to learn them at once: gate.max_contradiction: 1)"
+        )
     if unusable := observing.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
     if writing.span_ns > VIEWERS_SPAN_NS:

@@ -22,6 +22,11 @@ class Rings:
     ranges: Floats  # (rows, angle_bins) [m]; +inf clear, NaN unknown
     support: Floats  # (rows, angle_bins) share of what is known that agrees, 0..1
     samples: Ints  # (rows, angle_bins) remembered ranges
+    known: Floats  # (rows, angle_bins) share of the level's window that is known, 0..1: it sinks where nobody looks
+
+    def fresh(self, rules: Rules) -> Bools:
+        """Angle bins looked at lately enough to have a say, (rows, angle_bins)."""
+        return np.asarray(self.known >= rules.min_known)
 
     def firm(self, rules: Rules, min_samples: int) -> Bools:
         """Angle bins known well enough to be compared, (rows, angle_bins)."""
@@ -79,4 +84,5 @@ def stack(side: Mapping[int, Estimate], numbers: Sequence[int]) -> Rings:
         ranges=np.array([e.ranges for e in estimates], dtype=np.float64),
         support=np.clip(share, 0.0, 1.0),
         samples=np.array([e.samples for e in estimates], dtype=np.int64),
+        known=known,
     )

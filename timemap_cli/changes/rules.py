@@ -26,6 +26,7 @@ class Rules:
         5  # over all nodes: what stands near a path is seen by several, or by one in many bins
     )
     vote_samples: int = 5  # a node that looked less often has no say about a neighbour's report
+    min_known: float = 0.5  # of the window: what was not looked at since is no witness
     vote_share: float = 0.5  # of the nodes that can tell; to ask for two loses most, which only one node saw
     move_max_m: float = 1.0  # beyond a metre another thing of that shape is as likely
     move_shape_m: float = 0.1  # outlines farther apart than bin spacing and noise explain are two shapes

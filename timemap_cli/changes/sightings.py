@@ -18,7 +18,7 @@ def words(points: Floats, side: Rings, places: Places, rules: Rules) -> Words:
     """Each row's word (rows,) on the surface `points` (n, 2) [m, map frame]: STANDS, GONE or UNTOLD."""
     rows, bins, ranges = towards(points, places)
     seen, by = side.ranges[rows, bins], step(ranges, rules)
-    firm = side.firm(rules, rules.min_samples)[rows, bins]
+    firm = (side.firm(rules, rules.min_samples) & side.fresh(rules))[rows, bins]
     stand = (firm & (np.abs(seen - ranges) <= by)).sum(axis=1)
     gone = (firm & seen_past(ranges, seen, places.radius, rules)).sum(axis=1)
     told = stand + gone

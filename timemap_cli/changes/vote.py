@@ -13,7 +13,7 @@ def is_believed(thing: Thing, having: Rings, lacking: Rings, places: Places, rul
 
     A node never had it where it saw past its points on the side that has it. A node that shows it on both sides,
     because it cannot tell it from what is behind or has not made up its mind yet, has no say; nor has one that
-    can tell about less than half of the points from its place.
+    can tell about less than half of the points from its place, or did not look there lately.
     """
     points = thing.points[:: -(-len(thing.points) // _POINTS)]
     agree, contradict = _count(points, having, lacking, places, rules)
@@ -27,6 +27,6 @@ def _count(points: Floats, having: Rings, lacking: Rings, places: Places, rules:
     rows, bins, ranges = towards(points, places)
     had, never = look(having, rows, bins, ranges, places, rules)
     _, sees_past = look(lacking, rows, bins, ranges, places, rules)
-    often = having.firm(rules, rules.vote_samples)[rows, bins]
+    often = (having.firm(rules, rules.vote_samples) & having.fresh(rules))[rows, bins]
     agree = often & had & sees_past & lacking.firm(rules, rules.min_samples)[rows, bins]
     return agree.sum(axis=1), (often & never).sum(axis=1)

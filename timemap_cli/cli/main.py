@@ -11,6 +11,7 @@ from timemap_cli.cli.config import config
 from timemap_cli.cli.diff import diff
 from timemap_cli.cli.info import info
 from timemap_cli.cli.replay import replay
+from timemap_cli.cli.report import report
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, TimemapError, UsageError
 
@@ -29,7 +30,7 @@ def timemap() -> None:
     """
 
 
-for _command in (info, replay, changes, diff, config):
+for _command in (info, replay, changes, diff, report, config):
     timemap.add_command(_command)
 
 

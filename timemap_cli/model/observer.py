@@ -31,7 +31,7 @@ class Observations:
     def __len__(self) -> int:
         return len(self.nodes)
 
-    def part(self, rows: slice) -> "Observations":
+    def part(self, rows: slice | Ints) -> "Observations":
         """These observations alone."""
         return replace(
             self,

@@ -2,6 +2,7 @@
 
 import json
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -95,6 +96,20 @@ class ResultReader:
         except (KeyError, ValueError) as error:
             raise self._unreadable() from error
         return {e.node: e for e in sorted(found, key=lambda e: e.node)}
+
+    def history(self, level: str) -> Iterator[tuple[int, Estimate]]:
+        """Every estimate of a level with its stamp [ns], in the order of writing."""
+        scans, statuses = LevelTopic.SCAN.of(level), LevelTopic.STATUS.of(level)
+        scan = b""
+        try:
+            for topic, message in self._file.messages((scans, statuses)):
+                if topic == scans:
+                    scan = message
+                else:  # the status follows its scan
+                    estimate = unpack_estimate(scan, message, level, self.angle_bins)
+                    yield estimate.stamp_ns, estimate
+        except ValueError as error:
+            raise self._unreadable() from error
 
     def _read_nodes(self) -> tuple[Node, ...]:
         """The nodes of the last message that places them: it holds all."""

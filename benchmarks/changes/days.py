@@ -1,0 +1,83 @@
+"""What `timemap diff` tells from day to day, and how much it could compare.
+
+Each level's newest estimates at the end of a day are compared with those at the end of the day before.
+"""
+
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from benchmarks.changes.places import Claim, Event, claims, moved_from, places_of_transitions
+from benchmarks.changes.scores import Found, false_area, find, seen_in
+from benchmarks.changes.truth import Recorded, Truth
+
+TIMEMAP = str(Path(sys.executable).with_name("timemap"))
+
+
+@dataclass(frozen=True, slots=True)
+class Days:
+    """What one level's differences from day to day are worth."""
+
+    level: str
+    found: Found  # places of transitions, told on whatever day
+    at_once: int  # of these, told on the first patrol after
+    quiet_false: int
+    quiet_area: float  # [m^2]
+    area: float  # [m^2] that all claims cover beside the truth
+    compared: float  # share of all angle bins of all nodes, mean over the pairs of days
+
+
+def timemap_json(*arguments: str) -> dict[str, Any]:
+    """What a call of timemap prints with --json; RuntimeError where it fails."""
+    ran = subprocess.run([TIMEMAP, *arguments, "--json"], capture_output=True, text=True, check=False)
+    if ran.returncode:
+        raise RuntimeError(f"timemap {arguments[0]} ended with {ran.returncode}: {ran.stderr.strip()}")
+    document: dict[str, Any] = json.loads(ran.stdout)
+    return document
+
+
+def day_by_day(result: Path, level: str, truth: Truth, nodes: int) -> Days:
+    """Compare each day with the one before at one level; `nodes` is the number of all nodes."""
+    events, shares = [], []
+    for before, after in pairwise(truth.recordings):
+        told = timemap_json(
+            "diff", str(result), "--level", level, "--between", str(before.end_ns), str(after.end_ns)
+        )
+        summary = told["summary"]
+        shares.append(summary["compared_bins"] / (nodes * (summary["angle_bins"] or 1)))
+        events += [_event(change, i, level, after) for i, change in enumerate(told["changes"])]
+    return judged(events, level, truth, shares)
+
+
+def judged(events: Sequence[Event], level: str, truth: Truth, shares: Sequence[float]) -> Days:
+    """The worth of one level's differences, given as events that nobody adopts."""
+    found = find(claims(events), places_of_transitions(truth), truth)
+    quiet = truth.quiet()
+    quiet_false = seen_in(found.false, quiet)
+    return Days(
+        level, found, sum(_first_after(c, p.since_ns, truth) for p, c in found.pairs),
+        len(quiet_false), false_area(quiet_false, found.places), false_area(found.claims, found.places),
+        sum(shares) / len(shares),
+    )  # fmt: skip
+
+
+def _event(change: dict[str, Any], number: int, level: str, after: Recorded) -> Event:
+    """A difference as an event: seen throughout the later day, so that it never passes for people."""
+    x_min, y_min, x_max, y_max = change["bounds"]
+    bounds = (x_min, y_min, x_max, y_max)
+    return Event(
+        f"{level} day {after.day} no {number}", change["kind"], bounds, after.start_ns, after.end_ns, {},
+        tuple(sorted({sector["node"] for sector in change["sectors"]})),
+        moved_from(change["moved_from"], bounds),
+    )  # fmt: skip
+
+
+def _first_after(claim: Claim, since_ns: int, truth: Truth) -> bool:
+    """Whether a claim is of the first patrol after a time."""
+    first = next(r for r in truth.recordings if r.start_ns >= since_ns)
+    return claim.event.first_seen_ns == first.start_ns

@@ -1,0 +1,91 @@
+"""The figures as text."""
+
+from collections.abc import Mapping, Sequence
+from statistics import median
+
+from benchmarks.changes.days import Days
+from benchmarks.changes.places import Place
+from benchmarks.changes.scores import MOST_HALF_LIVES, Adoption, Found, Score
+from benchmarks.changes.truth import Recorded
+
+
+def events_table(score: Score) -> str:
+    """What the events are worth, then every place missed and every false claim."""
+    found = score.found
+    lines = [
+        "events",
+        f"  places told        {len(found.match)} of {len(found.places)}",
+        f"  recall             {_share(found.recall)}",
+        f"  precision          {_share(found.precision)}",
+        f"  F1                 {found.f1:.2f}",
+        f"  false              {len(found.false)} ({len(found.false) / score.patrols:.2f} per patrol), "
+        f"{len(found.again)} of them told again",
+        f"  false, quiet days  {score.quiet_false} ({score.quiet_patrols} patrols, {score.quiet_area:.2f} m2)",
+        f"  false area         {score.area:.2f} m2",
+        f"  people             {len(found.people)}, in no slow level",
+        f"  flicker            {_share(score.flicker)} toggles too many per event",
+        f"  told as moved      {score.moves[0]} of {score.moves[1]}",
+        f"  told as recurring  {score.recurring[0]} of {score.recurring[1]}",
+        *_adoption_lines(score.adoptions),
+    ]
+    return "\n".join([*lines, *_missed(found.missed), *_false(found)])
+
+
+def _adoption_lines(adoptions: Sequence[Adoption]) -> list[str]:
+    lines = []
+    for level in dict.fromkeys(a.level for a in adoptions):
+        mine = [a for a in adoptions if a.level == level]
+        took = [a.half_lives for a in mine if a.adopted]
+        overdue = sum(a.late and not a.adopted for a in mine)
+        text = f"median {median(took):.2f}, most {max(took):.2f} half-lives at the estimate; " if took else ""
+        lines.append(
+            f"  adopted, {level:9} {len(took)} of {len(mine)}; {text}"
+            f"{sum(a.late and a.adopted for a in mine)} late, {overdue} overdue (beyond {MOST_HALF_LIVES})"
+        )
+    return lines
+
+
+def days_table(days: Sequence[Days], unknown: Mapping[str, float]) -> str:
+    """What comparing days is worth, one line for each level, then what was missed and false."""
+    lines = [
+        "timemap diff from day to day",
+        f"  {'level':8}{'told':>9}{'at once':>9}{'recall':>8}{'precision':>11}{'F1':>6}{'false':>7}{'again':>7}"
+        f"{'quiet':>7}{'area m2':>9}{'compared':>10}{'unknown':>9}",
+    ]
+    for d in days:
+        told = f"{len(d.found.match)}/{len(d.found.places)}"
+        lines.append(
+            f"  {d.level:8}{told:>9}{d.at_once:>9}{_share(d.found.recall):>8}{_share(d.found.precision):>11}"
+            f"{d.found.f1:>6.2f}{len(d.found.false):>7}{len(d.found.again):>7}{d.quiet_false:>7}{d.area:>9.2f}"
+            f"{d.compared:>10.1%}{unknown[d.level]:>9.1%}"
+        )
+    for d in days:
+        lines += [f"  {d.level}:", *_missed(d.found.missed), *_false(d.found)]
+    return "\n".join(lines)
+
+
+def recordings_table(recordings: Sequence[Recorded]) -> str:
+    """How many recordings of how many minutes."""
+    minutes = sum(r.end_ns - r.start_ns for r in recordings) / 6e10
+    return f"{len(recordings)} patrols, {minutes:.0f} minutes"
+
+
+def _missed(places: Sequence[Place]) -> list[str]:
+    return [f"    missed  {'/'.join(sorted(p.kinds)):18} {p.change.what:10} {_at(p.bounds)}" for p in places]
+
+
+def _false(found: Found) -> list[str]:
+    again = found.again
+    return [
+        f"    {'again' if c in again else 'false':7} {c.kind:18} {c.event.name:10} {_at(c.bounds)}"
+        for c in found.false
+    ]
+
+
+def _at(bounds: tuple[float, float, float, float]) -> str:
+    x_min, y_min, x_max, y_max = bounds
+    return f"{x_min:6.2f}..{x_max:.2f}, {y_min:.2f}..{y_max:.2f}"
+
+
+def _share(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"

@@ -1,0 +1,263 @@
+"use strict";
+// The page of a result: everything it shows stands in the JSON above; nothing is fetched.
+const DATA = JSON.parse(document.getElementById("data").textContent);
+const UNKNOWN = 65535, CLEAR = 65534, PER_METRE = 100;
+const LEVEL_COLOURS = ["#e69f00", "#56b4e9", "#222222", "#cc79a7", "#999933"];
+const KIND_COLOURS = { appeared: "#009e73", vanished: "#d55e00", moved: "#0072b2" };
+const CONFIG = { displaylogo: false, responsive: true, scrollZoom: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
+const EVENTS = DATA.changes.events;
+const state = { step: DATA.times.length - 1, node: null, event: null, shown: {} };
+const estimates = {};  // by level: {step, node, ranges}
+
+const byId = (id) => document.getElementById(id);
+// Nanoseconds since 1970 as text do not fit a number: the last six digits are left out for plotting.
+const milliseconds = (ns) => Number(ns.slice(0, -6) || "0");
+const iso = (ms) => new Date(ms).toISOString().replace("T", " ");
+const readable = (ns) => iso(milliseconds(ns)).slice(0, 19);
+const colourOf = (level) => LEVEL_COLOURS[DATA.levels.indexOf(level) % LEVEL_COLOURS.length];
+const holdsAt = (event, ns) => event.episodes.some(
+  (one) => BigInt(one.since_ns) <= ns && (one.until_ns === null || ns < BigInt(one.until_ns)));
+
+// Without WebGL (a remote desktop, say) points are drawn as SVG: slower, and the same to see.
+const POINTS = document.createElement("canvas").getContext("webgl") ? "scattergl" : "scatter";
+
+async function unpacked(base64) {
+  const packed = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).arrayBuffer();
+}
+
+async function load() {
+  for (const level of DATA.levels) {
+    const packed = DATA.estimates[level];
+    estimates[level] = {
+      step: new Uint16Array(await unpacked(packed.step)),
+      node: new Uint32Array(await unpacked(packed.node)),
+      ranges: new Uint16Array(await unpacked(packed.ranges)),
+    };
+  }
+}
+
+// Row of the newest estimate of every node, up to a step.
+function newest(level, step) {
+  const { step: steps, node } = estimates[level], rows = new Map();
+  for (let row = 0; row < steps.length && steps[row] <= step; row++) rows.set(node[row], row);
+  return rows;
+}
+
+function endsOf(level, row, x0, y0, out) {
+  const bins = DATA.angle_bins, ranges = estimates[level].ranges, turn = 2 * Math.PI / bins;
+  for (let bin = 0; bin < bins; bin++) {
+    const range = ranges[row * bins + bin];
+    if (range >= CLEAR) continue;
+    out.x.push(x0 + range / PER_METRE * Math.cos((bin + 0.5) * turn));
+    out.y.push(y0 + range / PER_METRE * Math.sin((bin + 0.5) * turn));
+  }
+}
+
+function pointsAt(level, step) {
+  const out = { x: [], y: [] };
+  for (const [node, row] of newest(level, step)) endsOf(level, row, ...DATA.nodes[node], out);
+  return out;
+}
+
+function outlines(events) {
+  const out = { x: [], y: [], customdata: [] };
+  for (const event of events) {
+    for (const [x, y] of [...event.outline, event.outline[0]]) {
+      out.x.push(x); out.y.push(y); out.customdata.push(event.id);
+    }
+    out.x.push(null); out.y.push(null); out.customdata.push(event.id);
+  }
+  return out;
+}
+
+function planTraces() {
+  const now = BigInt(DATA.times[state.step] ?? "0");
+  const levels = [...DATA.levels].reverse().map((level) => ({
+    type: POINTS, mode: "markers", name: level, hoverinfo: "skip", visible: state.shown[level],
+    marker: { size: 2.5, color: colourOf(level) }, ...pointsAt(level, state.step),
+  }));
+  const nodes = {
+    type: "scatter", mode: "markers", name: "nodes", x: DATA.nodes.map((n) => n[0]), y: DATA.nodes.map((n) => n[1]),
+    text: DATA.nodes.map((_, i) => `node ${i}`), customdata: DATA.nodes.map((_, i) => ({ node: i })), hoverinfo: "text",
+    marker: { size: DATA.nodes.map((_, i) => (i === state.node ? 12 : 6)), color: "#2a9d5c", line: { width: 1, color: "#fff" } },
+  };
+  const kinds = Object.entries(KIND_COLOURS).map(([kind, colour]) => ({
+    type: "scatter", mode: "lines", name: kind, fill: "toself", fillcolor: colour + "55", line: { color: colour, width: 2 },
+    hoverinfo: "skip", ...outlines(EVENTS.filter((e) => e.kind === kind && holdsAt(e, now))),
+  }));
+  const marks = EVENTS.filter((e) => holdsAt(e, now));
+  const handles = {
+    type: "scatter", mode: "markers+text", name: "events", x: marks.map((e) => e.x), y: marks.map((e) => e.y),
+    text: marks.map((e) => String(e.id)), textposition: "top center", textfont: { size: 12 },
+    hovertext: marks.map((e) => `${e.id} ${e.kind} since ${readable(e.first_seen_ns)}`), hoverinfo: "text",
+    customdata: marks.map((e) => ({ event: e.id })), marker: { size: 9, color: marks.map((e) => KIND_COLOURS[e.kind]) },
+  };
+  const chosen = EVENTS.filter((e) => e.id === state.event);
+  const halo = {
+    type: "scatter", mode: "lines", name: "chosen", hoverinfo: "skip", line: { color: "#f5b700", width: 5 }, ...outlines(chosen),
+  };
+  return [...levels, nodes, halo, ...kinds, handles];
+}
+
+// Times in which nothing was recorded are left out of the time line, if they are longer than an hour.
+function pauses() {
+  const times = DATA.times.map(milliseconds), found = [];
+  for (let i = 1; i < times.length; i++) {
+    if (times[i] - times[i - 1] > 3.6e6) found.push({ bounds: [iso(times[i - 1] + 6e4), iso(times[i] - 6e4)] });
+  }
+  return found;
+}
+
+const AXES = { zeroline: false, gridcolor: "#eef1f5" };
+
+function drawPlan() {
+  const layout = {
+    margin: { l: 44, r: 8, t: 8, b: 36 }, showlegend: false, dragmode: "pan", uirevision: "keep", hovermode: "closest",
+    xaxis: { title: { text: "x [m]" }, ...AXES }, yaxis: { title: { text: "y [m]" }, scaleanchor: "x", ...AXES },
+  };
+  Plotly.react("plan", planTraces(), layout, CONFIG);
+  byId("now").textContent = DATA.times.length ? readable(DATA.times[state.step]) + " UTC" : "no estimates";
+}
+
+function drawLine() {
+  const end = DATA.times[DATA.times.length - 1];
+  const traces = Object.entries(KIND_COLOURS).map(([kind, colour]) => {
+    const x = [], y = [], customdata = [];
+    EVENTS.filter((e) => e.kind === kind).forEach((event) => event.episodes.forEach((one) => {
+      x.push(milliseconds(one.since_ns), milliseconds(one.until_ns ?? end), null);
+      const row = EVENTS.indexOf(event);
+      y.push(row, row, null);
+      customdata.push({ event: event.id }, { event: event.id }, null);
+    }));
+    return { type: "scatter", mode: "lines+markers", name: kind, x, y, customdata, line: { color: colour, width: 7 },
+      marker: { size: 7, color: colour }, hoverinfo: "skip" };
+  });
+  const now = DATA.times.length ? milliseconds(DATA.times[state.step]) : 0;
+  Plotly.react("line", traces, {
+    height: Math.min(420, 90 + 22 * EVENTS.length), margin: { l: 44, r: 8, t: 8, b: 36 }, showlegend: false,
+    hovermode: "closest", uirevision: "keep", xaxis: { type: "date", rangebreaks: pauses(), ...AXES },
+    yaxis: { tickvals: EVENTS.map((_, i) => i), ticktext: EVENTS.map((e) => String(e.id)), title: { text: "event" },
+      autorange: "reversed", ...AXES },
+    shapes: [{ type: "line", x0: now, x1: now, y0: 0, y1: 1, yref: "paper", line: { color: "#888", width: 1, dash: "dot" } }],
+  }, CONFIG);
+}
+
+function drawNode() {
+  if (state.node === null) return;
+  const traces = [...DATA.levels].reverse().map((level, place) => {
+    const out = { x: [], y: [] }, row = newest(level, state.step).get(state.node);
+    if (row !== undefined) endsOf(level, row, 0, 0, out);
+    return { type: "scatter", mode: "markers", name: level, hoverinfo: "skip",
+      marker: { size: 9 - 3 * Math.min(place, 2), color: colourOf(level) }, ...out };
+  });
+  traces.push({ type: "scatter", mode: "markers", x: [0], y: [0], hoverinfo: "skip", marker: { size: 8, color: "#2a9d5c" }, showlegend: false });
+  byId("node-title").textContent = `Node ${state.node}: what each level holds`;
+  Plotly.react("node", traces, {
+    margin: { l: 40, r: 8, t: 8, b: 32 }, legend: { orientation: "h", y: 1.12 }, uirevision: String(state.node),
+    xaxis: { title: { text: "m" }, ...AXES }, yaxis: { scaleanchor: "x", ...AXES },
+  }, CONFIG);
+}
+
+function fillEvents() {
+  const head = byId("events").tHead, body = byId("events").tBodies[0];
+  head.innerHTML = "<tr><th>id</th><th>what</th><th>x, y [m]</th><th>since</th><th>until</th><th>adopted by</th><th>seen</th></tr>";
+  for (const event of EVENTS) {
+    const row = body.insertRow();
+    row.dataset.event = event.id;
+    const levels = Object.entries(event.adopted).filter(([, at]) => at !== null).map(([level]) => level).join(", ");
+    const until = event.closed_ns === null ? (event.not_seen_since ? "not looked at since" : "") : readable(event.closed_ns).slice(0, 16);
+    const what = event.kind + (event.recurring ? ` (${event.episodes.length}×)` : "");
+    const cells = [event.id, what, `${event.x.toFixed(2)}, ${event.y.toFixed(2)}`, readable(event.first_seen_ns).slice(0, 16), until, levels,
+      `${Math.round(event.share_held * 100)} %`];
+    cells.forEach((text, column) => {
+      const cell = row.insertCell();
+      if (column === 1) {
+        const swatch = document.createElement("span");
+        swatch.className = "swatch"; swatch.style.background = KIND_COLOURS[event.kind];
+        cell.append(swatch);
+      }
+      cell.append(String(text));
+    });
+    row.addEventListener("click", () => choose(event.id));
+  }
+}
+
+function choose(id) {
+  const event = EVENTS.find((one) => one.id === id);
+  state.event = id;
+  state.node = event.nodes[0] ?? event.against[0] ?? state.node;
+  draw();
+  const [x0, y0, x1, y1] = event.bounds, room = 3;
+  Plotly.relayout("plan", { "xaxis.range": [x0 - room, x1 + room], "yaxis.range": [y0 - room, y1 + room] });
+}
+
+function markRows() {
+  const now = BigInt(DATA.times[state.step] ?? "0");
+  for (const row of byId("events").tBodies[0].rows) {
+    const event = EVENTS.find((one) => String(one.id) === row.dataset.event);
+    row.classList.toggle("chosen", event.id === state.event);
+    row.classList.toggle("past", !holdsAt(event, now));
+  }
+}
+
+function fillTable(id, rows) {
+  for (const [name, value] of rows) {
+    const row = byId(id).insertRow();
+    row.insertCell().append(name);
+    row.insertCell().append(String(value));
+  }
+}
+
+function fillRest() {
+  const { scans } = DATA.report, summary = DATA.changes.summary;
+  byId("told").textContent = `${EVENTS.length} changes, ${summary.open ?? 0} of them hold; ${DATA.nodes.length} nodes; ` +
+    `${scans.used} of ${scans.read} scans used`;
+  fillTable("scans", [["read", scans.read], ["used", scans.used], ...Object.entries(scans.dropped)]);
+  fillTable("inputs", DATA.inputs.map((one) => [one.name, one.sha256]));
+  fillTable("made", DATA.made);
+  byId("settings").textContent = DATA.settings;
+  Plotly.newPlot("coverage", DATA.levels.map((level) => ({
+    type: "bar", name: level, x: DATA.coverage.nodes, y: DATA.coverage[level], marker: { color: colourOf(level) },
+    hovertemplate: "node %{x}: %{y}<extra>" + level + "</extra>",
+  })), { margin: { l: 44, r: 8, t: 8, b: 36 }, barmode: "group", legend: { orientation: "h", y: 1.2 },
+    xaxis: { title: { text: "node" } }, yaxis: { title: { text: "angle bins" }, range: [0, DATA.angle_bins] } }, CONFIG);
+}
+
+function fillLevels() {
+  for (const level of DATA.levels) {
+    state.shown[level] = level === DATA.levels[DATA.levels.length - 1] || DATA.levels.length === 1;
+    const label = document.createElement("label"), box = document.createElement("input"), swatch = document.createElement("span");
+    box.type = "checkbox"; box.checked = state.shown[level]; box.id = `level-${level}`;
+    box.addEventListener("change", () => { state.shown[level] = box.checked; drawPlan(); });
+    swatch.className = "swatch"; swatch.style.background = colourOf(level);
+    label.append(box, swatch, level, " ");
+    byId("levels").append(label);
+  }
+}
+
+function draw() { drawPlan(); drawLine(); drawNode(); markRows(); }
+
+function clicked(target) {
+  byId(target).on("plotly_click", (found) => {
+    const data = found.points[0].customdata;
+    if (data && data.event !== undefined) choose(data.event);
+    if (data && data.node !== undefined) { state.node = data.node; draw(); }
+  });
+}
+
+async function start() {
+  await load();
+  fillLevels(); fillEvents(); fillRest();
+  const slider = byId("time");
+  slider.max = Math.max(0, DATA.times.length - 1);
+  slider.value = slider.max;
+  slider.addEventListener("input", () => { state.step = Number(slider.value); draw(); });
+  if (DATA.nodes.length) state.node = 0;
+  draw();
+  clicked("plan"); clicked("line");
+  document.body.dataset.ready = "yes";
+}
+
+start();
