@@ -11,6 +11,7 @@ from timemap_cli.changes.difference import Difference
 from timemap_cli.changes.rules import Rules
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.status import Status
 
 RADIUS = 10.0
 WALL = 5.0
@@ -64,6 +65,8 @@ def estimate(
         support=support * full,
         plausibility=(1 - (known - support)) * full,
         samples=np.full(len(ranges), samples, dtype=np.uint16),
+        status=np.full(len(ranges), Status.MEASURED, np.uint8),
+        last_seen_ns=np.full(len(ranges), stamp_ns),
     )
 
 

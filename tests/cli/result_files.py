@@ -6,6 +6,7 @@ import numpy as np
 
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.status import Status
 from timemap_cli.results.writer import ResultWriter
 
 BINS = 360
@@ -23,7 +24,9 @@ def room(level, stamp_ns, *, box: bool, node: int = 0) -> Estimate:
     if box:
         ranges[75:105] = 2.0
     sure = np.ones(BINS, np.float32)
-    return Estimate(node, level, stamp_ns, ranges, sure, sure, np.full(BINS, 7, np.uint16))
+    samples = np.full(BINS, 7, np.uint16)
+    status, last_seen_ns = np.full(BINS, Status.MEASURED, np.uint8), np.full(BINS, stamp_ns)
+    return Estimate(node, level, stamp_ns, ranges, sure, sure, samples, status, last_seen_ns)
 
 
 def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", radius=10.0) -> Path:

@@ -54,6 +54,7 @@ def told(slow):
         right,
         (samples < UNSEEN).sum(axis=2),
         (left < UNSEEN).sum(axis=2),
+        np.zeros((m, angle_bins), np.int64),
         np.array([one.taken for one in several]),
         np.zeros(m, np.int64),
         window,

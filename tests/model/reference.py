@@ -159,6 +159,28 @@ class SlowEstimate:
         """The best score of all closed paths, by trying each."""
         return max(map(self.score, itertools.product(*(range(len(states)) for states in self.states))))
 
+    def status(self, a, i):
+        """What showing state i of angle bin a rests on: unknown 0, measured 1, concluded 2, contested 3.
+
+        None where rounding decides.
+        """
+        memory, count = self.memory, [0.0] * len(self.states[a])
+        lately = set()  # states
+        for value, then in memory.samples[a]:
+            state, age = self.state_of(a, value), memory.missed[a] - then
+            count[state] += max(OLDEST, (1 - 1 / memory.window) ** age)
+            if age <= memory.window * math.log(2):
+                lately.add(state)
+        if not memory.samples[a]:
+            return 0
+        own, rival = count[i], max([0.0, *count[:i], *count[i + 1 :]])
+        close = (own + rival) - (own - rival) ** 2
+        if 0 < abs(close) < 1e-4 and rival > 0:
+            return None
+        if lately and rival > 0 and close > 0:
+            return 3
+        return 1 if i in lately and own > rival else 2
+
     def reported(self, a, i):
         """Lower median of the samples in a state, or of its pairs' ranges where its samples are gone; None: nothing."""
         values = [value for value, _ in self.memory.samples[a] if value in self.states[a][i]]

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.level_map import FREE, OCCUPIED, UNKNOWN, merged_points, occupancy_grid
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.status import Status
 
 BINS = 360
 RADIUS = 5.0
@@ -16,7 +17,9 @@ RADIUS = 5.0
 def seen(ranges, node=0, support=0.5):
     ranges = np.broadcast_to(np.asarray(ranges, np.float32), BINS).copy()
     share = np.full(BINS, support, np.float32)
-    return Estimate(node, "long", 0, ranges, share, share, np.full(BINS, 9, np.uint16))
+    samples = np.full(BINS, 9, np.uint16)
+    status, last_seen_ns = np.full(BINS, Status.MEASURED, np.uint8), np.zeros(BINS, np.int64)
+    return Estimate(node, "long", 0, ranges, share, share, samples, status, last_seen_ns)
 
 
 def bearings():

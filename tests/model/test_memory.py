@@ -134,6 +134,30 @@ def test_only_a_scan_that_did_not_see_the_angle_bin_ages_its_samples():
     assert memory.taken.tolist() == [6]
 
 
+def test_an_angle_bin_was_last_seen_in_the_newest_scan_that_shows_anything_there():
+    memory = Memory(Level("mid", 2, EVERY_SCAN), 4, 0)
+    memory.add_nodes([NODE])
+    scans = codes([[1, 1, NAN, NAN], [1, NAN, INF, NAN], [NAN, NAN, NAN, NAN], [1, NAN, NAN, NAN]])
+    memory.remember(np.zeros(4, np.int64), np.array([10, 20, 30, 40]), scans)
+    assert recalled(memory).last_seen_ns.tolist() == [[40, 10, 20, 0]]
+    assert recalled(memory).stamps_ns.tolist() == [40]
+
+
+def test_a_scan_that_the_level_did_not_take_is_not_when_an_angle_bin_was_last_seen():
+    memory = Memory(Level("long", 2, 1e9), 4, 0)
+    memory.add_nodes([NODE])
+    memory.remember(
+        np.zeros(2, np.int64), np.array([10, 20]), codes(np.full((2, 4), 1.0))
+    )  # fills the window
+    later = np.arange(30, 60)
+    for stamp in later:  # of which a young memory takes 2 / t
+        memory.remember(np.zeros(1, np.int64), np.array([stamp]), codes(np.full((1, 4), 1.0)))
+        found = recalled(memory)
+        assert (found.last_seen_ns == found.stamps_ns).all()
+    assert recalled(memory).taken[0] < 2 + len(later)
+    assert recalled(memory).last_seen_ns[0, 0] < later[-1]
+
+
 def test_a_scan_stands_for_one_sample_however_many_beams_fell_into_the_angle_bin():
     memory = recalled(learnt(np.full((3, 12), 2.0), 50))
     assert memory.n_samples.tolist() == [[3] * 12]

@@ -50,6 +50,7 @@ def told(reference, memory):
         codes(memory.pb),
         memory.n[None],
         memory.m[None],
+        np.zeros((1, len(memory.m)), np.int64),
         np.array([memory.T]),
         np.array([0]),
         memory.N,

@@ -8,6 +8,7 @@ from timemap_cli.model.levels import Level
 from timemap_cli.model.memory import Memory, Remembered
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.paper_profile import estimate_as_in_paper
+from timemap_cli.model.status import Status
 from timemap_cli.model.virtual_scan import UNSEEN
 
 ANGLE_BINS = 24
@@ -58,6 +59,21 @@ def test_what_was_never_seen_is_unknown():
     scan[5:9] = UNSEEN
     found = estimate_as_in_paper(remembered([scan] * 4), 0.075)
     assert np.flatnonzero(found.ranges[0] == UNSEEN).tolist() == [5, 6, 7, 8]
+
+
+def test_every_angle_bin_has_its_status():
+    near, far = ring(1000), ring(1300)
+    near[5:9] = UNSEEN
+    far[5:9] = UNSEEN
+    near[7] = 2000
+    scans = [near] * 5 + [far] * 15  # angle bin 7 stays unseen for 15 > 20 ln 2 scans
+    status = estimate_as_in_paper(remembered(scans), 0.075).status[0]
+    unknown, others = [5, 6, 8], np.delete(np.arange(ANGLE_BINS), [5, 6, 7, 8])
+    assert (status[unknown] == Status.UNKNOWN).all()
+    assert status[7] == Status.CONCLUDED
+    assert (status[others] == Status.MEASURED).all()
+    close = [*scans[:5], *[far] * 6]
+    assert (estimate_as_in_paper(remembered(close), 0.075).status[0, others] == Status.CONTESTED).all()
 
 
 def test_a_circle_that_closes_only_after_two_laps_is_estimated_and_harms_no_other_node():

@@ -61,7 +61,8 @@ def remembered(level, ranges, nodes, stamps, cuts):
         memory.remember(nodes[start:stop], stamps[start:stop], codes(ranges[start:stop]))
     found = memory.recall(np.arange(4))
     arrays = (found.samples, found.ages * (found.samples < 65535), found.left, found.right, found.n_samples)
-    return [array.tobytes() for array in (*arrays, found.n_pairs, found.taken, found.stamps_ns)]
+    counts = (found.n_pairs, found.last_seen_ns, found.taken, found.stamps_ns)
+    return [array.tobytes() for array in (*arrays, *counts)]
 
 
 @given(
@@ -73,6 +74,23 @@ def test_a_memory_does_not_depend_on_blocks(stream, level):
     whole = remembered(level, ranges, nodes, stamps, ())
     assert remembered(level, ranges, nodes, stamps, cuts) == whole
     assert remembered(level, ranges, nodes, stamps, range(1, len(ranges))) == whole
+
+
+@given(streams(), st.sampled_from([Level("a", 3, 2.5), Level("b", 4, 9.0), Level("c", 5, 60.0)]))
+@settings(max_examples=50)
+def test_an_angle_bin_was_last_seen_in_the_newest_scan_that_was_taken_and_saw_it(stream, level):
+    ranges, nodes, stamps, _ = stream
+    memory = Memory(level, 5, 3)
+    memory.add_nodes([Node(n, 0) for n in range(4)])
+    newest = np.zeros((4, 5), np.int64)
+    taken = np.zeros(4, np.int64)
+    for n, stamp, scan in zip(nodes, stamps, ranges, strict=True):
+        memory.remember(np.array([n]), np.array([stamp]), codes([scan]))
+        now = memory.recall(np.arange(4)).taken
+        if now[n] > taken[n]:
+            newest[n, ~np.isnan(scan)] = stamp
+        taken = now
+    assert memory.recall(np.arange(4)).last_seen_ns.tolist() == newest.tolist()
 
 
 @given(streams())
@@ -90,5 +108,5 @@ def test_a_node_remembers_what_it_would_alone(stream):
             alone.add_nodes([Node(node, 0)])
             alone.remember(np.zeros(mine.sum(), np.int64), stamps[mine], codes(ranges[mine]))
             expected, found = alone.recall(np.array([0])), everybody.recall(np.array([node]))
-            for name in ("samples", "left", "right", "n_samples", "n_pairs", "taken"):
+            for name in ("samples", "left", "right", "n_samples", "n_pairs", "last_seen_ns", "taken"):
                 np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))

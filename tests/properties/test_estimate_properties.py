@@ -60,6 +60,7 @@ def assert_estimate_is_the_references(memory, found, row=0):
         against = sum(slow.share[a]) - slow.share[a][i]
         assert found.plausibility[row, a] == pytest.approx(1 - against, abs=2e-6)
         assert found.samples[row, a] == len(memory.samples[a])
+        assert found.status[row, a] == slow.status(a, i) or slow.status(a, i) is None
         path.append(i)
     assert slow.score(path) == pytest.approx(slow.best_score(), abs=len(path) * 2e-6)
     return slow, path

@@ -46,6 +46,8 @@ def estimate(node: int, level: str, stamp_ns: int, bins: int = 360, seed: int = 
         rng.random(bins, np.float32),
         rng.random(bins, np.float32),
         rng.integers(0, 65536, bins, np.uint16),
+        rng.integers(0, 4, bins, np.uint8),
+        rng.integers(0, 2**31 * SECOND, bins),  # all that the seconds of a message hold
     )
 
 

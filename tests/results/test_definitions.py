@@ -1,6 +1,7 @@
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from timemap_cli.model.status import Status
 from timemap_cli.results import definitions
 
 STANDARD = [
@@ -29,7 +30,12 @@ def test_point_field_has_its_constants():
 
 def test_status_begins_with_the_fields_that_its_first_readers_know():
     names = [name for name, _ in typestore(definitions.STATUS).fielddefs[definitions.STATUS][1]]
-    assert names[:3] == ["header", "samples", "plausibility"]
+    assert names[:5] == ["header", "samples", "plausibility", "status", "last_seen"]
+
+
+def test_status_names_the_codes_of_the_model():
+    constants = typestore(definitions.STATUS).fielddefs[definitions.STATUS][0]
+    assert {name: value for name, _, value in constants} == {s.name: s.value for s in Status}
 
 
 @pytest.mark.parametrize("msgtype", [*STANDARD, definitions.STATUS])

@@ -1,5 +1,7 @@
 """The packed bytes against rosbags, which decodes by the definitions alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -16,7 +18,7 @@ FIVE = np.float32(5.0)
 
 def with_node(node: int, bins: int = 360) -> Estimate:
     one = estimate(0, "mid", T0, bins)
-    return Estimate(node, "mid", T0 + node, one.ranges, one.support, one.plausibility, one.samples)
+    return replace(one, node=node, stamp_ns=T0 + node)
 
 
 @pytest.mark.parametrize("bins", [359, 360, 361, 362])
@@ -33,7 +35,7 @@ def test_scan_is_what_a_ros_client_reads(node, bins):
     np.testing.assert_array_equal(scan.intensities, one.support)
 
 
-@pytest.mark.parametrize("bins", [359, 360])
+@pytest.mark.parametrize("bins", [358, 359, 360, 361])
 @pytest.mark.parametrize("node", [7, 10000])
 def test_status_is_what_a_ros_client_reads(node, bins):
     one = with_node(node, bins)
@@ -43,6 +45,16 @@ def test_status_is_what_a_ros_client_reads(node, bins):
     assert status.header.frame_id == f"timemap/node_{node:04d}"
     np.testing.assert_array_equal(status.samples, one.samples)
     np.testing.assert_array_equal(status.plausibility, one.plausibility)
+    np.testing.assert_array_equal(status.status, one.status)
+    assert [time.sec * 10**9 + time.nanosec for time in status.last_seen] == one.last_seen_ns.tolist()
+
+
+def test_an_angle_bin_that_was_never_seen_has_a_time_of_zero():
+    one = with_node(0)
+    one.last_seen_ns[3] = 0
+    (raw,) = pack_statuses([one], 360)
+    never = STORE.deserialize_cdr(raw, definitions.STATUS).last_seen[3]
+    assert (never.sec, never.nanosec) == (0, 0)
 
 
 def test_a_batch_with_frame_names_of_several_lengths_keeps_its_order():

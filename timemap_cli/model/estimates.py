@@ -20,3 +20,5 @@ class Estimate:
     support: npt.NDArray[np.float32]  # (angle_bins,) share of the level's window that agrees, 0..1
     plausibility: npt.NDArray[np.float32]  # (angle_bins,) share that does not contradict, 0..1
     samples: npt.NDArray[np.uint16]  # (angle_bins,) remembered ranges
+    status: npt.NDArray[np.uint8]  # (angle_bins,) what it rests on, a `Status` each
+    last_seen_ns: npt.NDArray[np.int64]  # (angle_bins,) stamp of the level's newest scan of it; 0 never

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from timemap_cli.model.chains import best_states
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States, ascending, states_from_data
+from timemap_cli.model.status import Codes, statuses
 from timemap_cli.model.virtual_scan import Ranges
 from timemap_cli.model.vote import Forbidding, Shares, shares, votes
 
@@ -24,6 +25,7 @@ class Estimated:
     support: Floats  # (m, angle_bins) share of the window that agrees
     plausibility: Floats  # (m, angle_bins) share of the window that does not contradict
     samples: Ints  # (m, angle_bins) remembered ranges
+    status: Codes  # (m, angle_bins) a `Status` each
 
 
 Estimator = Callable[[Remembered], Estimated]
@@ -49,6 +51,7 @@ def assembled(memory: Remembered, states: States, share: Shares, best: Ints) -> 
         support.reshape(shape),
         plausibility.reshape(shape),
         memory.n_samples,
+        statuses(memory, states, share, best).reshape(shape),
     )
 
 

@@ -32,6 +32,9 @@ class Remembered:
     right: Ranges  # (m, angle_bins, most pairs) [mm] ... and in the next
     n_samples: Ints  # (m, angle_bins)
     n_pairs: Ints  # (m, angle_bins)
+    last_seen_ns: (
+        Ints  # (m, angle_bins) header stamp of the newest scan taken that saw the angle bin; 0: none
+    )
     taken: Ints  # (m,) scans that the memory took
     stamps_ns: Ints  # (m,) header stamp of the newest of them
     window: int
@@ -52,6 +55,7 @@ class Memory:
         self._n_samples = np.zeros((0, angle_bins), np.uint32)
         self._n_pairs = np.zeros((0, angle_bins), np.uint32)
         self._missed = np.zeros((0, angle_bins), np.uint32)  # scans taken that did not see the angle bin
+        self._last_seen_ns = np.zeros((0, angle_bins), np.int64)
         self._samples = np.zeros((0, angle_bins, level.window), np.uint16)
         self._missed_then = np.zeros((0, angle_bins, level.window), np.uint32)  # _missed when a sample came
         self._left = np.zeros((0, angle_bins, level.window), np.uint16)
@@ -78,7 +82,7 @@ class Memory:
         if room >= self._rows:
             return
         counts = (self._n_samples, self._n_pairs, self._missed, self._missed_then)
-        for array in (self._taken, self._stamps_ns, *counts):
+        for array in (self._taken, self._stamps_ns, self._last_seen_ns, *counts):
             array.resize((self._rows + _SPARE_ROWS, *array.shape[1:]), refcheck=False)
         for store in (self._samples, self._left, self._right):
             store.resize((self._rows + _SPARE_ROWS, *store.shape[1:]), refcheck=False)
@@ -105,6 +109,7 @@ class Memory:
         self._store_pairs(groups, ranges, seen, random << np.uint64(32))
         self._taken[row] = count  # ascending within a node: the last one stays
         self._stamps_ns[row] = stamps_ns[order]
+        self._note_when_seen(groups, stamps_ns[order], seen)
         return changed
 
     def _store_samples(self, groups: Groups, ranges: Ranges, seen: Bools, random: chance.Keys) -> None:
@@ -120,6 +125,10 @@ class Memory:
         places = self._places(groups, both, chosen, self._n_pairs, random)
         self._left.reshape(-1)[places] = ranges.take(chosen)
         self._right.reshape(-1)[places] = np.roll(ranges, -1, axis=1).take(chosen)
+
+    def _note_when_seen(self, groups: Groups, stamps_ns: Ints, seen: Bools) -> None:
+        newest = np.maximum.reduceat(np.where(seen, stamps_ns[:, None], 0), groups.starts)
+        self._last_seen_ns[groups.distinct] = np.maximum(newest, self._last_seen_ns[groups.distinct])
 
     def _places(self, groups: Groups, seen: Bools, chosen: Ints, count: Counts, random: chance.Keys) -> Ints:
         """Flat index of the place that each chosen value takes: the next empty one, else a random one.
@@ -151,6 +160,7 @@ class Memory:
             self._right[rows, :, pairs],
             n_samples,
             n_pairs,
+            self._last_seen_ns[rows],
             self._taken[rows],
             self._stamps_ns[rows],
             self.level.window,

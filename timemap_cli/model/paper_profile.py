@@ -21,9 +21,8 @@ MISSING_EDGE = 1e-12  # probability of two states never seen side by side, where
 def estimate_as_in_paper(memory: Remembered, range_bin: float) -> Estimated:
     """Estimate m nodes of one level; `range_bin` [m] is the width of the paper's slices of range."""
     angle_bins = memory.samples.shape[1]
-    memory = replace(memory, ages=np.zeros_like(memory.ages))  # the paper's samples do not age
     states = states_from_range_bins(memory, range_bin)
-    share = shares(memory, states)
+    share = shares(replace(memory, ages=np.zeros_like(memory.ages)), states)  # the paper's samples do not age
     own = share.states / np.maximum(share.states.sum(axis=1, keepdims=True), 1e-300)
     weights = _EdgeWeights(memory, states, own, strict=True)
     prior = _prior(states, own, angle_bins)

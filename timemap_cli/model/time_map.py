@@ -8,7 +8,7 @@ import numpy.typing as npt
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.estimator import Estimated, Estimator
 from timemap_cli.model.levels import Level
-from timemap_cli.model.memory import Memory
+from timemap_cli.model.memory import Memory, Remembered
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations
 from timemap_cli.model.virtual_scan import CLEAR
@@ -64,15 +64,25 @@ class TimeMap:
                 some = nodes[start : start + _NODES_AT_ONCE]
                 remembered = memory.recall(some)
                 estimated = self._estimator(remembered)
-                found += _as_estimates(some, memory.level.name, remembered.stamps_ns, estimated)
+                found += _as_estimates(some, memory.level.name, remembered, estimated)
         return found
 
 
-def _as_estimates(nodes: Ints, level: str, stamps_ns: Ints, found: Estimated) -> list[Estimate]:
+def _as_estimates(nodes: Ints, level: str, memory: Remembered, found: Estimated) -> list[Estimate]:
     metres = _METRES.take(found.ranges)
     support, plausibility = found.support.astype(np.float32), found.plausibility.astype(np.float32)
     samples = found.samples.astype(np.uint16)
     return [
-        Estimate(node, level, stamp_ns, metres[i], support[i], plausibility[i], samples[i])
-        for i, (node, stamp_ns) in enumerate(zip(nodes.tolist(), stamps_ns.tolist(), strict=True))
+        Estimate(
+            node,
+            level,
+            stamp_ns,
+            metres[i],
+            support[i],
+            plausibility[i],
+            samples[i],
+            found.status[i],
+            memory.last_seen_ns[i],
+        )
+        for i, (node, stamp_ns) in enumerate(zip(nodes.tolist(), memory.stamps_ns.tolist(), strict=True))
     ]

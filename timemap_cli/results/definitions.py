@@ -142,6 +142,13 @@ _FIELDS = {
         "std_msgs/Header header\n"
         "uint16[] samples        # remembered ranges\n"
         "float32[] plausibility  # share of the window that does not contradict the scan, 0..1\n"
+        "uint8 UNKNOWN=0         # never observed\n"
+        "uint8 MEASURED=1        # observed like that lately, and most of what is known says so\n"
+        "uint8 CONCLUDED=2       # not observed like that lately, or against its own majority\n"
+        "uint8 CONTESTED=3       # observed lately, but another state is about as likely\n"
+        "uint8[] status\n"
+        "# Stamp of the newest scan, of those that the level took, that saw the angle bin; zero: none.\n"
+        "builtin_interfaces/Time[] last_seen\n"
     ),
 }
 

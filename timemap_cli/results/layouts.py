@@ -46,6 +46,11 @@ def status_layout(angle_bins: int, frame_size: int) -> np.dtype[np.void]:
             ("samples_padding", f"V{-2 * angle_bins % 4}"),
             ("plausibility_count", "<u4"),
             ("plausibility", "<f4", (angle_bins,)),
+            ("status_count", "<u4"),
+            ("status", "u1", (angle_bins,)),
+            ("status_padding", f"V{-angle_bins % 4}"),
+            ("last_seen_count", "<u4"),
+            ("last_seen", [("sec", "<i4"), ("nanosec", "<u4")], (angle_bins,)),
         ]
     )
 
@@ -72,9 +77,13 @@ def pack_statuses(estimates: Sequence[Estimate], angle_bins: int) -> Iterator[by
     """One Status per estimate, in order."""
 
     def fill(block: _Block, rows: Sequence[Estimate]) -> None:
-        block["samples_count"] = block["plausibility_count"] = angle_bins
+        for name in ("samples", "plausibility", "status", "last_seen"):
+            block[f"{name}_count"] = angle_bins
         block["samples"] = [e.samples for e in rows]
         block["plausibility"] = [e.plausibility for e in rows]
+        block["status"] = [e.status for e in rows]
+        last_seen = block["last_seen"]
+        last_seen["sec"], last_seen["nanosec"] = np.divmod(np.stack([e.last_seen_ns for e in rows]), NS)
 
     return _pack(estimates, angle_bins, status_layout, fill)
 
@@ -104,6 +113,8 @@ def unpack_estimate(scan: bytes, status: bytes, level: str, angle_bins: int) -> 
         support=s["intensities"].astype(np.float32),
         plausibility=t["plausibility"].astype(np.float32),
         samples=t["samples"].astype(np.uint16),
+        status=t["status"].astype(np.uint8),
+        last_seen_ns=t["last_seen"]["sec"].astype(np.int64) * NS + t["last_seen"]["nanosec"],
     )
 
 
