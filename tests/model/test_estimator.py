@@ -128,9 +128,16 @@ def test_a_border_of_the_view_that_never_moves_is_no_border_of_the_estimate():
 def test_support_and_plausibility_are_shares_of_the_window():
     scans = np.array([[2.0, 2.0, NAN]] * 6 + [[5.0, NAN, NAN]] * 2)
     result = found(scans, window=10)
-    assert result.support[0] == pytest.approx([6 / 8, 6 / 8 * 0.9**2 * 0 + 6 / 8 * 0.9**2, 0], abs=1e-5)
+    assert result.support[0] == pytest.approx([6 / 8, 6 / 8, 0], abs=1e-5)
     assert result.plausibility[0] == pytest.approx([6 / 8, 1, 1], abs=1e-5)
     assert result.samples[0].tolist() == [8, 6, 0]
+
+
+def test_samples_that_a_full_level_did_not_renew_lose_their_support():
+    scans = np.array([[2.0, 2.0, NAN]] * 6 + [[2.0, NAN, NAN]] * 6)
+    result = found(scans, window=10)
+    assert result.support[0] == pytest.approx([1, 6 / 10 * 0.9**2, 0], abs=1e-5)
+    assert result.plausibility[0] == pytest.approx([1, 1, 1], abs=1e-5)
 
 
 def test_a_full_window_of_one_surface_has_all_the_support():
