@@ -24,9 +24,12 @@ ALL_ROUND = fan(721, 360)
 SQUARE = rectangle(-3, -3, 3, 3)
 
 
-def virtual(scan, x=0.0, y=0.0, *, angle_bins=360, radius=10.0):
+FREE, UNKNOWN = np.array([True]), np.array([False])  # what is known of the way to the node
+
+
+def virtual(scan, x=0.0, y=0.0, *, angle_bins=360, radius=10.0, way=FREE):
     """Ranges [m] of the only scan, inf clear, NaN unseen."""
-    ranges, judged = virtual_scans(scan, np.array([[x, y]]), angle_bins, radius)
+    ranges, judged = virtual_scans(scan, np.array([[x, y]]), way, angle_bins, radius)
     assert judged[0] or (ranges == UNSEEN).all()
     return metres(ranges[0])
 
@@ -35,8 +38,8 @@ def metres(ranges):
     return np.where(ranges == UNSEEN, np.nan, np.where(ranges == CLEAR, np.inf, ranges / 1000))
 
 
-def judges(scan, x=0.0, y=0.0, radius=10.0):
-    return bool(virtual_scans(scan, np.array([[x, y]]), 360, radius)[1][0])
+def judges(scan, x=0.0, y=0.0, radius=10.0, way=FREE):
+    return bool(virtual_scans(scan, np.array([[x, y]]), way, 360, radius)[1][0])
 
 
 def seen_bins(ranges):
@@ -284,6 +287,13 @@ def test_a_near_node_is_judged_from_every_side(degrees, away):
         assert judges(scan, away * math.cos(side), away * math.sin(side))
 
 
+def test_a_node_to_which_no_way_is_known_must_be_seen_or_be_where_the_robot_stands():
+    scan = look_around(SQUARE, 0.0, 0.0, 0.0, fan(181, 180))
+    assert judges(scan, 0.9, 0.3, way=UNKNOWN)
+    assert judges(scan, -0.2, 0.1, way=UNKNOWN)
+    assert not judges(scan, -0.9, 0.3, way=UNKNOWN)
+
+
 def test_a_node_far_behind_a_narrow_scanner_is_not_judged():
     """The disc where the robot stands is small: it does not reach to where it never was."""
     scan = sweeps([np.full(181, 20.0)], fan(181, 180), [pose(0, 0)])
@@ -313,7 +323,7 @@ def test_a_node_that_the_scan_did_not_see_learns_nothing():
     assert not judges(scan, -2.5, 1.75)  # behind it
     assert not judges(scan, 3.0, 2.5)  # in the other room
     assert not judges(scan, -4.5, 0.0)  # outside
-    ranges, _ = virtual_scans(scan, np.array([[3.0, 2.5]]), 360, 10.0)
+    ranges, _ = virtual_scans(scan, np.array([[3.0, 2.5]]), FREE, 360, 10.0)
     assert (ranges == UNSEEN).all()
 
 
@@ -390,7 +400,7 @@ def test_a_full_circle_without_the_doubled_beam_closes():
 def test_a_node_on_a_wall_harms_nothing():
     for x, y in ((3.0, 0.0), (3.0, 3.0), (2.9999, 0.0), (3.0001, 0.0)):
         ranges, judged = virtual_scans(
-            look_around(SQUARE, 2.0, 0.0, 0.0, ALL_ROUND), np.array([[x, y]]), 360, 10.0
+            look_around(SQUARE, 2.0, 0.0, 0.0, ALL_ROUND), np.array([[x, y]]), FREE, 360, 10.0
         )
         assert ranges.shape == (1, 360)
         assert not (ranges[~judged] != UNSEEN).any()
@@ -405,6 +415,6 @@ def test_a_radius_of_sixty_metres_holds():
 
 def test_no_scans_give_no_virtual_scans():
     scan = look_around(SQUARE, 0, 0, 0, ALL_ROUND).rows(slice(0, 0))
-    ranges, judged = virtual_scans(scan, np.zeros((0, 2)), 360, 10.0)
+    ranges, judged = virtual_scans(scan, np.zeros((0, 2)), FREE[:0], 360, 10.0)
     assert ranges.shape == (0, 360)
     assert judged.shape == (0,)

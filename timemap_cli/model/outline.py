@@ -5,12 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.free_ways import ROBOT_RADIUS
 from timemap_cli.model.rays import Bools, Floats, Rays, rays
 from timemap_cli.model.sweeps import Sweeps
 
 Poses = npt.NDArray[np.float64]
 
-BLIND_MARGIN = 0.1  # [m] by which the disc where the robot stands reaches beyond the node's centre
+BLIND_MARGIN = 0.1  # [m] by which the disc round the robot reaches beyond a node to which the way is free
 LARGEST_DISC = 2.5  # [m] a node farther away than this must have been seen
 
 
@@ -29,13 +30,14 @@ class Outlines:
     turn: Floats  # (n, 1) +1: vertices run counter-clockwise round the robot, -1: clockwise
 
 
-def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int) -> Outlines:
-    """Polygons of n scans relative to the n node centres (n, 2) [m, map frame]."""
+def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], ways_free: Bools, angle_bins: int) -> Outlines:
+    """Polygons of n scans relative to the n node centres (n, 2) [m, map frame]; `ways_free` (n,) as in `FreeWays`."""
     first, last = sweeps.map_from_laser_first, sweeps.map_from_laser_last
     fan = rays(sweeps, angle_bins)
     origin = first[:, :2, 3] - centres
     missing = np.isnan(fan.length)
-    blind = np.minimum(np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN, LARGEST_DISC)
+    beyond_node = np.minimum(np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN, LARGEST_DISC)
+    blind = np.where(ways_free, beyond_node, ROBOT_RADIUS)
     length = np.where(missing, blind.astype(np.float32)[:, None], fan.length)
     moves = not np.array_equal(first, last)
     if moves:

@@ -27,6 +27,10 @@ class Placement:
         """(nodes, 2) [m, map frame]."""
         return np.array([(node.x, node.y) for node in self.nodes], np.float64).reshape(-1, 2)
 
+    def centres_of(self, nodes: Ints) -> Floats:
+        """Centres (n, 2) [m, map frame] of these nodes (n,); NaN for NO_NODE."""
+        return np.vstack((self.centres, np.full(2, np.nan)))[nodes]
+
     def assign(self, places: Floats) -> Ints:
         """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order; NO_NODE if none is near."""
         chosen = np.full(len(places), NO_NODE)
