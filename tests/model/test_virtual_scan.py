@@ -18,6 +18,7 @@ from tests.model.scenes import (
     seen_from,
     sweeps,
 )
+from timemap_cli.model.outline import outlines
 from timemap_cli.model.virtual_scan import CLEAR, UNSEEN, virtual_scans
 
 ALL_ROUND = fan(721, 360)
@@ -135,6 +136,18 @@ def test_every_beam_of_a_moving_robot_has_its_own_pose(upside_down):
 
 
 # ------------------------------------------------------------------ one value per angle bin
+
+
+@pytest.mark.parametrize("upside_down", [False, True])
+@pytest.mark.parametrize("turn", [-1.0, -0.3, 0.0, 0.02, 0.5, 1.0])
+def test_the_ends_of_a_sweep_that_turns_far_are_where_they_were_measured(turn, upside_down):
+    """10 m away, one centimetre."""
+    bearings = fan(181, 180)
+    first, last = pose(0, 0, 0.3, upside_down=upside_down), pose(0, 0, 0.3 + turn, upside_down=upside_down)
+    found = outlines(sweeps([np.full(181, 10.0)], bearings, [first], [last]), np.zeros((1, 2)), FREE, 360)
+    yaw = 0.3 + turn * np.arange(181) / 180 + (-bearings if upside_down else bearings)
+    assert found.x[0, :181] == pytest.approx(10 * np.cos(yaw), abs=0.01)
+    assert found.y[0, :181] == pytest.approx(10 * np.sin(yaw), abs=0.01)
 
 
 def test_of_several_beams_in_an_angle_bin_the_nearest_point_counts():
@@ -359,6 +372,23 @@ def test_a_handful_of_beams_is_taken(beams, value, angle_bins):
         assert not np.isposinf(seen).any()
     if math.isnan(value):
         assert np.isnan(seen).all()
+
+
+def test_two_beams_a_whole_turn_apart_are_taken():
+    seen = virtual(sweeps([[2.0, 2.0]], [-math.pi, math.pi], [pose(0.2, 0.1)]))
+    assert not np.isposinf(seen).any()
+
+
+def test_a_drivers_largest_number_is_far_away():
+    """Its square overflows; it is clear as a hit at 500 m is."""
+    seen = {}
+    for value in (500.0, float(np.finfo(np.float32).max)):
+        ranges = np.full(361, 4.0)
+        ranges[100:110] = value
+        seen[value] = virtual(sweeps([ranges], fan(361, 360), [pose(0.5, 0.2)]))
+    one, other = seen.values()
+    np.testing.assert_array_equal(one, other)
+    assert np.isposinf(one).sum() >= 4
 
 
 def test_one_beam_is_one_range():
