@@ -81,6 +81,25 @@ def test_half_the_window_is_new_after_the_half_life_in_scans(window, half_life, 
     assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
 
 
+@pytest.mark.parametrize("seen", [1.0, 0.5, 0.25, 0.1])
+@pytest.mark.parametrize(("window", "half_life"), [(25, 20.0), (50, 34.7)])
+def test_the_half_life_holds_while_an_angle_bin_seen_seldom_still_fills_its_window(window, half_life, seen):
+    level = Level("level", window, half_life)
+    experiment = Experiment(level, seen)
+    experiment.show_for_long(OLD, age_of(level))
+    experiment.show(NEW, round(half_life))
+    assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
+
+
+@pytest.mark.parametrize("seen", [1.0, 0.5, 0.25])
+def test_a_young_memory_follows_the_majority_of_what_each_angle_bin_saw(seen):
+    """57 old and 43 new of a hundred: an angle bin of which fewer scans saw anything has fewer, not newer ones."""
+    experiment = Experiment(Level("long", 100, 200.0), seen)
+    experiment.show(OLD, 57)
+    experiment.show(NEW, 43)
+    assert experiment.share_of_new() == pytest.approx(0.43, abs=0.01)
+
+
 @pytest.mark.parametrize("seen", [1.0, 0.5])
 @pytest.mark.parametrize(
     ("window", "half_life", "step_s"), [(25, 10.0, 0.1), (25, 30.0, 0.5), (50, 20.0, 0.2)]
