@@ -66,7 +66,7 @@ def test_every_angle_bin_has_its_status():
     near[5:9] = UNSEEN
     far[5:9] = UNSEEN
     near[7] = 2000
-    scans = [near] * 20 + [far] * 15  # angle bin 7 stays unseen for 15 > 20 ln 2 scans of a full level
+    scans = [near] * 20 + [far] * 30  # angle bin 7 stays unseen for more than 20 ln 2 scans that a full level takes
     status = estimate_as_in_paper(remembered(scans), 0.075).status[0]
     unknown, others = [5, 6, 8], np.delete(np.arange(ANGLE_BINS), [5, 6, 7, 8])
     assert (status[unknown] == Status.UNKNOWN).all()
