@@ -236,7 +236,10 @@ def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
         yield "the stamps of a recording begin before those of the one before it end: do not ask for times in between"
     for level, shortfall in writing.shortfalls.items():
         if shortfall > 0.1:
-            yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
+            yield (
+                f"level {level} forgets more slowly than its half-life says: its window is too long for it, "
+                f"only {1 - shortfall:.0%} of the scans due came"
+            )
     if unusable := observing.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
     if writing.span_ns > VIEWERS_SPAN_NS:

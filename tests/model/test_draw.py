@@ -47,12 +47,12 @@ def test_the_share_one_scan_replaces_follows_from_the_half_life():
 
 
 def test_a_half_life_that_the_window_cannot_have_is_told_as_a_shortfall():
-    """100 places with a half-life of 30 s at one scan a second: 2.28 places are due, one can be filled."""
+    """100 places with a half-life of 30 s at one scan a second: 2.299 scans are due, one can be filled."""
     draw = Draw(Level("long", 100, 30.0, in_seconds=True))
     draw.add_nodes(1)
     stamps_ns = np.arange(1, 501) * 1_000_000_000
     draw.taken(Groups.of(np.zeros(500, np.int64)), stamps_ns, np.array([7], np.uint64))
-    assert draw.shortfall == pytest.approx(1 - 1 / 2.284, abs=1e-3)
+    assert draw.shortfall == pytest.approx(1 - 1 / 2.299, abs=1e-3)
 
 
 def test_a_half_life_that_the_window_can_have_has_no_shortfall():
