@@ -275,7 +275,10 @@ def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
         yield "the stamps of a recording begin before those of the one before it end: do not ask for times in between"
     for level, shortfall in writing.shortfalls.items():
         if shortfall > 0.1:
-            yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
+            yield (
+                f"level {level} forgets more slowly than its half-life says: its window is too long for it, "
+                f"only {1 - shortfall:.0%} of the scans due came"
+            )
     if lost := observing.counts.dropped.get("lost"):
         yield (
             f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
