@@ -138,6 +138,24 @@ def test_a_recording_that_follows_at_once_continues_the_drive():
     assert counts.dropped == {}
 
 
+def ends(out):
+    return [item.recording for item in out if isinstance(item, EndOfRecording)]
+
+
+def test_every_recording_of_a_drive_ends_once():
+    parts = [FakeRecording([[MOUNT, driving(at, at + 39.5), scans(np.arange(at, at + 39))]]) for at in (0, 40, 80)]
+    out, _ = replayed(*parts)
+    assert ends(out) == [0, 1, 2]
+    assert [seconds(out[: out.index(EndOfRecording(number))])[-1] for number in range(3)] == [38, 78, 118]
+
+
+def test_recordings_that_are_not_read_to_their_end_end_once():
+    parts = [FakeRecording([[MOUNT, driving(at, at + 39.5), scans(np.arange(at, at + 39))]]) for at in (0, 40, 80)]
+    out, _ = replayed(*parts, end_ns=int(ns(50)[0]))
+    assert ends(out) == [0, 1, 2]
+    assert seconds(out)[-1] == 49
+
+
 def test_recordings_apart_have_their_own_moving_transforms_and_mounts():
     other_mount = tf("base", "laser", [100], [[0.7, 0, 0]], static=True)
     a = FakeRecording([[MOUNT, driving(0, 4), scans([1])]])

@@ -116,7 +116,8 @@ class _Drive:
         self._window = ScanWindow(span_ns)
         self._frame_codes: dict[str, int] = {}
         self._newest_ns: dict[int, int] = {}  # recording -> largest stamp of its scans
-        self._ends: list[tuple[int, int]] = []  # (stamp after which it is over, recording)
+        self._ends: list[tuple[int, int]] = []  # (stamp after which it is over, recording), not yet told
+        self._ended: set[int] = set()
         self._scan_log_ns = NEVER_NS
 
     def blocks(self, group: Sequence[int]) -> Iterator[Sweeps | EndOfRecording]:
@@ -182,7 +183,8 @@ class _Drive:
 
     def _end(self, index: int) -> None:
         """Note a recording read to its end: it is over after its newest scan, or after what is out."""
-        if index not in [ended for _, ended in self._ends]:
+        if index not in self._ended:
+            self._ended.add(index)
             newest_ns = self._newest_ns.get(index, BEGINNING_NS)
             self._ends.append((max(newest_ns, self._window.ready_before_ns), index))
 
