@@ -112,3 +112,22 @@ def test_overlapping_ends_write_the_maps_once(tmp_path):
     summary = replayed(tmp_path, *logs)
     with ResultReader(summary.result) as reader:
         assert len(list(reader._file.messages(["/timemap/mid/map"], None))) == 1
+
+
+def test_the_parts_of_a_drive_write_the_maps_once_each(tmp_path):
+    logs = [standing_log(tmp_path / f"{i}.mcap", start_ns=START_NS + i * 10**10) for i in range(3)]
+    summary = replayed(tmp_path, *logs)
+    with ResultReader(summary.result) as reader:
+        assert len(list(reader._file.messages(["/timemap/mid/map"], None))) == 3
+
+
+def test_a_scan_recorded_twice_is_not_lost(tmp_path):
+    logs = [standing_log(tmp_path / f"{name}.mcap") for name in "ab"]
+    summary = replayed(tmp_path, *logs)
+    assert (summary.scans_used, summary.dropped, summary.data_lost) == (100, {"duplicate": 100}, False)
+
+
+def test_scans_of_before_1970_are_counted(tmp_path):
+    log = standing_log(tmp_path / "a.mcap", start_ns=-2_000_000_000, log_later_ns=START_NS)
+    summary = replayed(tmp_path, log)
+    assert (summary.scans_used, summary.dropped) == (80, {"malformed": 20})

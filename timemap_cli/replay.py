@@ -27,7 +27,8 @@ from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
 from timemap_cli.second_process import mapped
 from timemap_cli.times import format_time, parse_time
 
-_NOT_LOST = ("outside_time",)  # reasons for dropping a scan that the user asked for
+# Reasons for dropping a scan by which nothing is lost: the user asked for it, or the scan is there once more.
+_NOT_LOST = ("outside_time", "duplicate")
 
 
 class Progress(Protocol):

@@ -50,7 +50,7 @@ class EndOfRecording:
 class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
-    Reasons: ``malformed`` (or what decoding said), ``outside_time``, ``late`` (more than 10 s behind the
+    Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than 10 s behind the
     newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
     """
 
@@ -155,10 +155,10 @@ class _Drive:
                 self._counts.transforms_dropped += batch.count
 
     def _take_scans(self, index: int, batch: ScanBatch) -> None:
-        self._counts.read += len(batch.stamps_ns)
         if not len(batch.stamps_ns):
             return
         if not _has_bearings(batch.layout):
+            self._counts.read += len(batch.stamps_ns)
             self._counts.drop("malformed", len(batch.stamps_ns))
             return
         layout, frame, rank = batch.layout, batch.frame_id.lstrip("/"), self._rank[batch.topic]
@@ -189,9 +189,11 @@ class _Drive:
             self._ends.append((max(newest_ns, self._window.ready_before_ns), index))
 
     def _arrive(self, until_ns: int) -> None:
-        late, outside = self._window.arrive(until_ns)
-        self._counts.drop("late", late)
-        self._counts.drop("outside_time", outside)
+        arrived = self._window.arrive(until_ns)
+        self._counts.read += arrived.read
+        self._counts.drop("malformed", arrived.malformed)
+        self._counts.drop("late", arrived.late)
+        self._counts.drop("outside_time", arrived.outside)
 
     def _let_out(self, until_ns: int) -> Iterator[Sweeps | EndOfRecording]:
         """Yield what is ready if it is worth a block, or everything after a long silence of the scanner."""
