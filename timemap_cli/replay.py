@@ -122,7 +122,13 @@ class _Observing:
         """Blocks of observations in stamp order; None where a recording has ended."""
         plan, counts = self._plan, self.counts
         blocks = sweeps(
-            self._recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns
+            self._recordings,
+            plan.selection,
+            plan.beams,
+            counts,
+            start_ns=start_ns,
+            end_ns=end_ns,
+            drives=plan.drives,
         )
         for block in blocks:
             if isinstance(block, EndOfRecording):

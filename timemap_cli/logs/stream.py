@@ -72,18 +72,20 @@ def sweeps(
     *,
     start_ns: int | None = None,
     end_ns: int | None = None,
+    drives: Sequence[Sequence[int]] | None = None,
 ) -> Iterator[Sweeps | EndOfRecording]:
     """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
 
     ``recordings`` are in the order of their starts; ``beams`` is by (index, topic).
-    Recordings that overlap or follow within 10 s are one drive: merged, with common transforms. Within a
+    Recordings of one of the ``drives`` are merged, with common transforms: where not given, those that
+    overlap or follow within 10 s. Within a
     drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
     (open) cut by the scans' stamps; static transforms count wherever they stand. Which scans share a block
     has no bearing on any value.
     """
     span_ns = (BEGINNING_NS if start_ns is None else start_ns, NEVER_NS if end_ns is None else end_ns)
     static = [_static_transforms(recording, counts) for recording in recordings]
-    for number, group in enumerate(joined(recordings, WINDOW_NS)):
+    for number, group in enumerate(drives or joined(recordings, WINDOW_NS)):
         poses = PoseSource(selection.map_frame, selection.pose)
         # A drive's first part may be the only one to hold the static transforms: its own come last and
         # replace what the others say.
