@@ -267,7 +267,9 @@ class _LogReader:
             f"{topic}: {count} messages {reason}" for (topic, reason), count in sorted(self._bad.items())
         ]
         if self._rejected:
-            found.append(f"{self._rejected} transforms or poses are unusable (rotation of length zero, NaN)")
+            found.append(
+                f"{self._rejected} transforms or poses are unusable (rotation of length zero, NaN, off the earth)"
+            )
         return found
 
 
