@@ -28,7 +28,8 @@ from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
 from timemap_cli.second_process import mapped
 from timemap_cli.times import format_time, parse_time
 
-_NOT_LOST = ("outside_time",)  # reasons for dropping a scan that the user asked for
+# Reasons for dropping a scan by which nothing is lost: the user asked for it, or the scan is there once more.
+_NOT_LOST = ("outside_time", "duplicate")
 
 
 class Progress(Protocol):
@@ -127,7 +128,13 @@ class _Observing:
         """Blocks of observations in stamp order; None where a recording has ended."""
         plan, counts = self._plan, self.counts
         blocks = sweeps(
-            self._recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns
+            self._recordings,
+            plan.selection,
+            plan.beams,
+            counts,
+            start_ns=start_ns,
+            end_ns=end_ns,
+            drives=plan.drives,
         )
         for block in blocks:
             if isinstance(block, EndOfRecording):
