@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 import zstandard
 from mcap.reader import make_reader
@@ -121,6 +123,23 @@ def test_parts_of_a_recording_are_read_in_order_of_time(tmp_path):
     assert read(folder) == recorded.drive_rows(ROS2)
     with Recording(folder) as recording:
         assert (recording.start_ns, recording.end_ns) == (START_NS, START_NS + 1_900_000_005)
+
+
+def test_parts_of_a_recording_that_overlap_are_read_together(tmp_path, monkeypatch):
+    monkeypatch.setattr("timemap_cli.logs.chunked.STRETCH_BYTES", 2000)
+    messages = recorded.drive(ROS2, 200)
+    folder = tmp_path / "run"
+    folder.mkdir()
+    recorded.write_mcap(folder / "run_0.mcap", messages[:300:2] + messages[300:700])
+    recorded.write_mcap(folder / "run_1.mcap", messages[1:300:2])
+    recorded.write_mcap(folder / "run_2.mcap", messages[700:])
+    assert read(folder) == recorded.drive_rows(ROS2, 200)
+    with Recording(folder) as recording:
+        times = [
+            np.concatenate([one.log_ns for one in batches]) for batches in recording.batches(("/scan", "/tf"))
+        ]
+    assert len(times) > 5
+    assert all(earlier.max() <= later.min() for earlier, later in pairwise(times))
 
 
 def test_a_part_that_metadata_names_and_is_missing_is_told(tmp_path):
