@@ -297,6 +297,27 @@ def test_bag_that_was_never_closed_is_read_whole(tmp_path):
     assert "index is missing" in problems_after_reading(path)
 
 
+@pytest.mark.parametrize("missing", [0, 30])
+def test_the_chunk_that_a_crash_left_open_is_read_as_far_as_it_goes(tmp_path, missing):
+    """Until a chunk is closed, its head says it is empty."""
+    path = FORMATS["bag"][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    at = content.index(b"index_pos=") + len(b"index_pos=")
+    content[at : at + 8] = bytes(8)
+    head = content.rindex(b"compression=none")
+    size_at = head + len(b"compression=none") + 4 + len(b"size=")
+    (size,) = struct.unpack_from("<I", content, size_at)
+    content[size_at : size_at + 8] = bytes(8)  # and the length of the chunk behind it
+    path.write_bytes(content[: size_at + 8 + size - missing])
+    found, whole = read(path), recorded.drive_rows(ROS2)
+    odometry = ("pose", "/odom", "odom", "base_link")
+    assert found == whole | {odometry: whole[odometry][: 19 if missing else 20]}
+    assert (
+        problems_after_reading(path)
+        == "it was never closed, as after a crash; what was written whole is read"
+    )
+
+
 @pytest.mark.parametrize("name", ["mcap", "mcap_lz4", "bag_bz2", "bag_lz4"])
 def test_damaged_chunk_is_left_out_and_told(tmp_path, name):
     path = FORMATS[name][0](tmp_path)

@@ -29,6 +29,7 @@ class BagSpan(ChunkSpan):
     """A chunk and the number of messages by connection in it."""
 
     counts: dict[int, int]
+    stop: int | None = None  # where the data of a chunk ends that was never closed: its head does not tell
 
 
 class BagFile:
@@ -83,8 +84,7 @@ class BagFile:
     ) -> list[RawMessages]:
         """Messages of one chunk; none, and an entry in ``problems``, where it is damaged."""
         try:
-            chunk = records.file_record(self._file, span.offset)
-            content = records.chunk_content(chunk, records.record_data(self._file, chunk))
+            chunk, content = self._content(span)
             data = np.frombuffer(content, np.uint8)
             entries = records.from_index(data, self._index(chunk.stop, len(span.counts)))
             if entries is None or {key: len(entries[key][0]) for key in entries} != span.counts:
@@ -98,6 +98,13 @@ class BagFile:
             if key in wanted
         ]
         return [chosen for part in parts if len(chosen := within(part, start_ns, end_ns))]
+
+    def _content(self, span: BagSpan) -> tuple[records.Record, bytes]:
+        chunk = records.file_record(self._file, span.offset)
+        if span.stop is None:
+            return chunk, records.chunk_content(chunk, records.record_data(self._file, chunk))
+        chunk = replace(chunk, stop=span.stop)
+        return chunk, records.record_data(self._file, chunk)
 
     def _index(self, position: int, count: int) -> list[tuple[int, bytes]]:
         """The ``count`` index records behind a chunk, as far as there are so many."""
@@ -122,6 +129,7 @@ class BagFile:
         found: dict[int, Connection] = {}
         spans: list[BagSpan] = []
         position = header.stop
+        reason = "its index is missing or damaged, as after a crash; all of it is read"
         try:
             while position < size:
                 record = records.file_record(self._file, position)
@@ -129,29 +137,53 @@ class BagFile:
                     raise DamagedBagError("it is cut off")
                 if record.op == records.CHUNK:
                     content = records.chunk_content(record, records.record_data(self._file, record))
-                    for inner in records.buffer_records(content):
-                        if inner.op == records.CONNECTION:
-                            one = records.connection(inner, content[inner.start : inner.stop])
-                            found[one.id] = one
+                    found |= _connections(content)
                     spans += _walked_span(position, content)
+                    if not content and (rest := self._unclosed(record, size)):
+                        found |= _connections(rest)
+                        spans += _walked_span(position, rest, record.stop + len(rest))
+                        reason = "it was never closed, as after a crash; what was written whole is read"
+                        break
                 elif record.op == records.CONNECTION:
                     break
                 position = record.stop
-            reason = "its index is missing or damaged, as after a crash; all of it is read"
         except (DamagedBagError, struct.error):
             reason = f"it is cut off at byte {position} of {size}; what comes before is read"
         self.problems.append(reason)
         return found, spans
 
+    def _unclosed(self, chunk: records.Record, size: int) -> bytes:
+        """The whole records behind the head of a chunk that was being written; empty where there is no message.
 
-def _walked_span(position: int, content: bytes) -> list[BagSpan]:
+        Compressed ones cannot be told from damage.
+        """
+        content = records.record_data(self._file, replace(chunk, stop=size))
+        stop = 0
+        ops = set()
+        try:
+            for inner in records.buffer_records(content):
+                stop = inner.stop
+                ops.add(inner.op)
+        except DamagedBagError:
+            pass
+        return content[:stop] if records.MESSAGE in ops else b""
+
+
+def _connections(content: bytes) -> dict[int, Connection]:
+    """The connections that are described in a chunk."""
+    inner = (record for record in records.buffer_records(content) if record.op == records.CONNECTION)
+    found = (records.connection(record, content[record.start : record.stop]) for record in inner)
+    return {one.id: one for one in found}
+
+
+def _walked_span(position: int, content: bytes, stop: int | None = None) -> list[BagSpan]:
     """The chunk at ``position`` with the messages found in it; empty where there are none."""
     entries = records.walk(content)
     if not entries:
         return []
     times = np.concatenate([log_ns for log_ns, _, _ in entries.values()])
     counts = {key: len(log_ns) for key, (log_ns, _, _) in entries.items()}
-    return [BagSpan(position, int(times.min()), int(times.max()), counts)]
+    return [BagSpan(position, int(times.min()), int(times.max()), counts, stop)]
 
 
 def _read_index(file: IO[bytes], header: records.Record) -> tuple[dict[int, Connection], list[BagSpan]]:

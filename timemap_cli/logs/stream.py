@@ -50,8 +50,8 @@ class EndOfRecording:
 class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
-    Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than 10 s behind the
-    newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
+    Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
+    10 s behind the newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
     """
 
     read: int = 0
