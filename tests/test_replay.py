@@ -196,3 +196,41 @@ def test_scans_of_before_1970_are_counted(tmp_path):
     log = standing_log(tmp_path / "a.mcap", start_ns=-2_000_000_000, log_later_ns=START_NS)
     summary = replayed(tmp_path, log)
     assert (summary.scans_used, summary.dropped) == (80, {"malformed": 20})
+
+
+def two_scanner_log(path, n_scans=300):
+    """Two scanners in turn, on a robot that drives 3 m/s along a wall and so makes nodes quickly."""
+    edges = [(START_NS, "base_link", frame, (0, 0, 0.2, *STILL)) for frame in ("front", "rear")]
+    messages = [Message("/tf_static", START_NS, transforms(ROS2, *edges))]
+    shape = {"angle_min": float(BEARINGS[0]), "angle_increment": float(np.radians(1.0))}
+    for i in range(n_scans):
+        now = START_NS + i * 50_000_000
+        messages.append(
+            Message("/tf", now, transforms(ROS2, (now, "map", "base_link", (0, 0.15 * i, 0, *STILL))))
+        )
+        frame = ("front", "rear")[i % 2]
+        ranges = (2.0 + i % 2 / 10) / np.cos(BEARINGS)
+        messages.append(Message(f"/{frame}", now, scan(ROS2, now, ranges, frame, **shape)))
+    return write_mcap(path, messages)
+
+
+def test_small_blocks_are_learnt_together_and_it_does_not_show(tmp_path, monkeypatch):
+    log = two_scanner_log(tmp_path / "a.mcap")
+    settings = load(None, {"input": {"scan_topics": ["/front", "/rear"]}, "gate": NO_GATE})
+    learnt = []
+
+    def counted(make, items):
+        work = make()
+        for item in items:
+            learnt.append(item)
+            yield work(item)
+
+    monkeypatch.setattr("timemap_cli.replay.mapped", counted)
+    together = replayed(tmp_path, log, settings=settings)
+    assert [0 if seen is None else len(seen) for seen in learnt] == [128, 128, 44, 0]
+    content = together.result.read_bytes()
+    monkeypatch.setattr("timemap_cli.replay.LEAST_SCANS", 1)
+    apart = replayed(tmp_path, log, settings=settings, force=True)
+    assert len(learnt) == 4 + 301
+    assert together.nodes > 30
+    assert apart.result.read_bytes() == content

@@ -15,12 +15,13 @@ from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.stream import LEAST_SCANS, EndOfRecording, ScanCounts, sweeps
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.learner import Learnt, Round
 from timemap_cli.model.nodes import Node
-from timemap_cli.model.observer import Observations, Observer
+from timemap_cli.model.observer import Observations, Observer, gathered
+from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
@@ -136,13 +137,24 @@ class _Observing:
             end_ns=end_ns,
             drives=plan.drives,
         )
+        # Two scanners in turn, or bearings that differ from scan to scan, make blocks of one scan.
+        waiting: list[Observations] = []
         for block in blocks:
-            if isinstance(block, EndOfRecording):
+            is_end = isinstance(block, EndOfRecording)
+            if not isinstance(block, EndOfRecording):
+                waiting.append(self._observed(block))
+            if waiting and (is_end or sum(map(len, waiting)) >= LEAST_SCANS):
+                yield gathered(waiting)
+                waiting = []
+            if is_end:
                 yield None
-                continue
-            seen = self._observer.observe(block)
-            self._count(seen)
-            yield seen
+        if waiting:
+            yield gathered(waiting)
+
+    def _observed(self, block: Sweeps) -> Observations:
+        seen = self._observer.observe(block)
+        self._count(seen)
+        return seen
 
     def _count(self, seen: Observations) -> None:
         self.used += len(seen)

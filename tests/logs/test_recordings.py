@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 import zstandard
 from mcap.reader import make_reader
@@ -126,6 +128,23 @@ def test_parts_of_a_recording_are_read_in_order_of_time(tmp_path):
     assert read(folder) == recorded.drive_rows(ROS2)
     with Recording(folder) as recording:
         assert (recording.start_ns, recording.end_ns) == (START_NS, START_NS + 1_900_000_005)
+
+
+def test_parts_of_a_recording_that_overlap_are_read_together(tmp_path, monkeypatch):
+    monkeypatch.setattr("timemap_cli.logs.chunked.STRETCH_BYTES", 2000)
+    messages = recorded.drive(ROS2, 200)
+    folder = tmp_path / "run"
+    folder.mkdir()
+    recorded.write_mcap(folder / "run_0.mcap", messages[:300:2] + messages[300:700])
+    recorded.write_mcap(folder / "run_1.mcap", messages[1:300:2])
+    recorded.write_mcap(folder / "run_2.mcap", messages[700:])
+    assert read(folder) == recorded.drive_rows(ROS2, 200)
+    with Recording(folder) as recording:
+        times = [
+            np.concatenate([one.log_ns for one in batches]) for batches in recording.batches(("/scan", "/tf"))
+        ]
+    assert len(times) > 5
+    assert all(earlier.max() <= later.min() for earlier, later in pairwise(times))
 
 
 def test_a_part_that_metadata_names_and_is_missing_is_told(tmp_path):
@@ -320,6 +339,27 @@ def test_a_bag_cut_off_in_its_only_compressed_chunk_says_that_nothing_is_left(tm
     path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "lz4", chunk_bytes=10**9)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     assert "no message comes whole before that" in problems_after_reading(path)
+
+
+@pytest.mark.parametrize("missing", [0, 30])
+def test_the_chunk_that_a_crash_left_open_is_read_as_far_as_it_goes(tmp_path, missing):
+    """Until a chunk is closed, its head says it is empty."""
+    path = FORMATS["bag"][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    at = content.index(b"index_pos=") + len(b"index_pos=")
+    content[at : at + 8] = bytes(8)
+    head = content.rindex(b"compression=none")
+    size_at = head + len(b"compression=none") + 4 + len(b"size=")
+    (size,) = struct.unpack_from("<I", content, size_at)
+    content[size_at : size_at + 8] = bytes(8)  # and the length of the chunk behind it
+    path.write_bytes(content[: size_at + 8 + size - missing])
+    found, whole = read(path), recorded.drive_rows(ROS2)
+    odometry = ("pose", "/odom", "odom", "base_link")
+    assert found == whole | {odometry: whole[odometry][: 19 if missing else 20]}
+    assert (
+        problems_after_reading(path)
+        == "it was never closed, as after a crash; what was written whole is read"
+    )
 
 
 @pytest.mark.parametrize("name", ["mcap", "mcap_lz4", "bag_bz2", "bag_lz4"])

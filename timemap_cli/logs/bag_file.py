@@ -29,6 +29,7 @@ class BagSpan(ChunkSpan):
     """A chunk and the number of messages by connection in it."""
 
     counts: dict[int, int]
+    stop: int | None = None  # where the data of a chunk ends that was never closed: its head does not tell
 
 
 class BagFile:
@@ -85,8 +86,7 @@ class BagFile:
     ) -> list[RawMessages]:
         """Messages of one chunk; none, and an entry in ``problems``, where it is damaged."""
         try:
-            chunk = records.file_record(self._file, span.offset)
-            content = self._content(chunk)
+            chunk, content = self._content(span)
             data = np.frombuffer(content, np.uint8)
             entries = records.from_index(data, self._index(chunk.stop, len(span.counts)))
             if entries is None or {key: len(entries[key][0]) for key in entries} != span.counts:
@@ -101,7 +101,15 @@ class BagFile:
         ]
         return [chosen for part in parts if len(chosen := within(part, start_ns, end_ns))]
 
-    def _content(self, chunk: records.Record) -> bytes:
+    def _content(self, span: BagSpan) -> tuple[records.Record, bytes]:
+        """A chunk and its uncompressed records."""
+        chunk = records.file_record(self._file, span.offset)
+        if span.stop is None:
+            return chunk, self._whole(chunk)
+        chunk = replace(chunk, stop=span.stop)
+        return chunk, records.record_data(self._file, chunk)
+
+    def _whole(self, chunk: records.Record) -> bytes:
         """Uncompressed records of a chunk; of one that the end of the file cuts off, those that are whole."""
         if chunk.stop <= self._size:
             return records.chunk_content(chunk, records.record_data(self._file, chunk))
@@ -136,12 +144,16 @@ class BagFile:
             while position < size:
                 record = records.file_record(self._file, position)
                 if record.op == records.CHUNK:
-                    content = self._content(record)
-                    for inner in records.buffer_records(content):
-                        if inner.op == records.CONNECTION:
-                            one = records.connection(inner, content[inner.start : inner.stop])
-                            found[one.id] = one
+                    content = self._whole(record)
+                    found |= _connections(content)
                     spans += _walked_span(position, content)
+                    if not content and (rest := self._unclosed(record, size)):
+                        found |= _connections(rest)
+                        spans += _walked_span(position, rest, record.stop + len(rest))
+                        self.problems.append(
+                            "it was never closed, as after a crash; what was written whole is read"
+                        )
+                        return found, spans
                 elif record.op == records.CONNECTION:
                     break
                 if record.stop > size:
@@ -153,20 +165,43 @@ class BagFile:
             self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
         return found, spans
 
+    def _unclosed(self, chunk: records.Record, size: int) -> bytes:
+        """The whole records behind the head of a chunk that was being written; empty where there is no message.
+
+        Compressed ones cannot be told from damage.
+        """
+        content = records.record_data(self._file, replace(chunk, stop=size))
+        stop = 0
+        ops = set()
+        try:
+            for inner in records.buffer_records(content):
+                stop = inner.stop
+                ops.add(inner.op)
+        except DamagedBagError:
+            pass
+        return content[:stop] if records.MESSAGE in ops else b""
+
 
 def _cut_off(position: int, size: int, spans: list[BagSpan]) -> str:
     rest = "what comes before is read" if spans else "no message comes whole before that"
     return f"it is cut off at byte {position} of {size}; {rest}"
 
 
-def _walked_span(position: int, content: bytes) -> list[BagSpan]:
+def _connections(content: bytes) -> dict[int, Connection]:
+    """The connections that are described in a chunk."""
+    inner = (record for record in records.buffer_records(content) if record.op == records.CONNECTION)
+    found = (records.connection(record, content[record.start : record.stop]) for record in inner)
+    return {one.id: one for one in found}
+
+
+def _walked_span(position: int, content: bytes, stop: int | None = None) -> list[BagSpan]:
     """The chunk at ``position`` with the messages found in it; empty where there are none."""
     entries = records.walk(content)
     if not entries:
         return []
     times = np.concatenate([log_ns for log_ns, _, _ in entries.values()])
     counts = {key: len(log_ns) for key, (log_ns, _, _) in entries.items()}
-    return [BagSpan(position, int(times.min()), int(times.max()), counts)]
+    return [BagSpan(position, int(times.min()), int(times.max()), counts, stop)]
 
 
 def _read_index(file: IO[bytes], header: records.Record) -> tuple[dict[int, Connection], list[BagSpan]]:

@@ -22,6 +22,7 @@ from timemap_cli.logs.decode import decode
 from timemap_cli.logs.files import open_files
 from timemap_cli.logs.mcap_chunks import DamagedChunkError
 from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache
+from timemap_cli.logs.parts import stretches_of_all
 
 FOREIGN_ERRORS = (
     AssertionError,
@@ -104,13 +105,9 @@ class Recording:
             if topic.name in topics and topic.msgtype not in MESSAGE_TYPES:
                 content = topic.msgtype or "untyped messages"
                 raise UsageError(f"{topic.name} in {self.path} holds {content}, which cannot be used")
-        for storage in self._storages:
-            chosen = {connection.id for connection in storage.connections if connection.topic in topics}
-            if not chosen:
-                continue
-            with _translated(self.path):
-                for parts in storage.stretches(chosen, start_ns, end_ns):
-                    yield decode(parts, self._decoders)
+        with _translated(self.path):
+            for parts in stretches_of_all(self._storages, topics, start_ns, end_ns):
+                yield decode(parts, self._decoders)
 
     def close(self) -> None:
         """Release the files."""

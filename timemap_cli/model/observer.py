@@ -43,6 +43,21 @@ class Observations:
         )
 
 
+def gathered(some: Sequence[Observations]) -> Observations:
+    """Observations of consecutive blocks as those of one; at least one."""
+    if len(some) == 1:
+        return some[0]
+    return Observations(
+        np.concatenate([one.nodes for one in some]),
+        np.concatenate([one.stamps_ns for one in some]),
+        np.concatenate([one.ranges for one in some]),
+        np.concatenate([one.passes for one in some]),
+        node_not_seen=sum(one.node_not_seen for one in some),
+        no_node=sum(one.no_node for one in some),
+        all_nodes=some[-1].all_nodes,
+    )
+
+
 class Observer:
     """Gives every scan to its node and turns it into what it would have been from there."""
 
