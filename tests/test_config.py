@@ -153,7 +153,7 @@ def test_the_radius_fits_millimetres_in_16_bits():
         ({"estimate": {"every": "0s"}}, "estimate.every is '0s', outside 0.1 to 1000000 s or obs"),
         ({"estimate": {"every": 10}}, "estimate.every is 10, not a number with its unit"),
         ({"input": {"no_return": "free"}}, "input.no_return is 'free', not one of: auto, clear, ignore"),
-        ({"input": {"no_return": True}}, "input.no_return is True, not one of: auto, clear, ignore"),
+        ({"input": {"no_return": True}}, "input.no_return is true, not one of: auto, clear, ignore"),
         ({"input": {"scan_topics": "/scan"}}, "input.scan_topics is '/scan', not a list of topics"),
         ({"input": {"scan_topics": [""]}}, "input.scan_topics is '', not a name"),
         ({"input": {"map_frame": ""}}, "input.map_frame is '', not a name"),
@@ -233,8 +233,9 @@ def test_a_file_wins_over_the_numbers_of_the_profile(tmp_path):
 
 
 def test_a_missing_settings_file_is_a_usage_error(tmp_path):
-    with pytest.raises(UsageError, match=r"no settings file .*absent\.yaml"):
+    with pytest.raises(UsageError, match=r"no settings file .*absent\.yaml") as caught:
         load(tmp_path / "absent.yaml")
+    assert caught.value.hint == f"timemap config > {tmp_path}/absent.yaml"
 
 
 @pytest.mark.parametrize(
@@ -245,6 +246,16 @@ def test_what_is_not_yaml_is_said_in_one_line(tmp_path, text):
     with pytest.raises(UsageError, match="is not YAML") as caught:
         load(path)
     assert "\n" not in caught.value.message
+    assert "unicode string" not in caught.value.message
+    assert "https:" not in caught.value.message
+    assert ">" not in caught.value.hint  # nobody is led to overwrite what they wrote
+
+
+def test_what_is_not_yaml_is_told_with_its_line(tmp_path):
+    path = file_with(tmp_path, "seed: 1\nmap: {radius: 3\ngate: {}\n")
+    with pytest.raises(UsageError) as caught:
+        load(path)
+    assert caught.value.message == f"{path} is not YAML: line 3: expected ',' or '}}', but got ':'"
 
 
 @pytest.mark.parametrize("text", ["just words\n", "- 1\n- 2\n"])
@@ -254,11 +265,18 @@ def test_a_file_without_settings_is_a_usage_error(tmp_path, text):
 
 
 def test_a_folder_or_other_bytes_as_settings_file_are_usage_errors(tmp_path):
-    with pytest.raises(UsageError, match="cannot read the settings file"):
+    with pytest.raises(UsageError, match=r"cannot read the settings file .*: is a directory"):
         load(tmp_path)
     path = tmp_path / "bytes.yaml"
     path.write_bytes(b"\xff\xfe\xfa")
-    with pytest.raises(UsageError, match="cannot read the settings file"):
+    with pytest.raises(UsageError, match=r"cannot read the settings file .*: it is not a text"):
+        load(path)
+
+
+@pytest.mark.parametrize(("value", "shown"), [("null", "empty"), ("", "empty"), ("true", "true")])
+def test_a_wrong_value_is_shown_as_the_file_has_it(tmp_path, value, shown):
+    path = file_with(tmp_path, f"map:\n  radius: {value}\n")
+    with pytest.raises(UsageError, match=f"map.radius is {shown}, not a number"):
         load(path)
 
 

@@ -1,4 +1,4 @@
-from timemap_cli.errors import ExitCode, TimemapError, UsageError
+from timemap_cli.errors import ExitCode, TimemapError, UsageError, no_such_file
 
 
 def test_exit_codes_are_those_of_the_readme():
@@ -20,3 +20,15 @@ def test_a_usage_error_is_a_timemap_error_with_code_2():
     error = UsageError("no such topic", hint="timemap info log.mcap")
     assert isinstance(error, TimemapError)
     assert (error.hint, error.exit_code) == ("timemap info log.mcap", 2)
+
+
+def test_for_a_missing_file_what_is_called_much_like_it_is_proposed(tmp_path):
+    for name in ("monday.mcap", "notes.txt"):
+        (tmp_path / name).touch()
+    error = no_such_file(tmp_path / "mondya.mcap", "a recording")
+    assert (error.message, error.hint) == (
+        f"there is no file {tmp_path}/mondya.mcap",
+        f"{tmp_path}/monday.mcap",
+    )
+    assert no_such_file(tmp_path / "x", "a recording").hint == "a recording"
+    assert no_such_file(tmp_path / "nowhere" / "x", "a recording").hint == "a recording"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.logs.recorded import ROS2, START_NS, Message, scan, transforms, write_mcap
+from tests.logs.recorded import ROS1, ROS2, START_NS, Message, drive, scan, transforms, write_bag, write_mcap
 from timemap_cli.config import load
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.replay import replay
@@ -55,6 +55,9 @@ def test_a_replay_that_used_no_scan_fails_and_leaves_no_file(tmp_path):
     log = standing_log(tmp_path / "a.mcap")
     with pytest.raises(TimemapError, match="no scan could be used: outside_time 100"):
         replayed(tmp_path, log, start="+60s")
+    with pytest.raises(UsageError, match=r"outside_time 100 \(--start \+60s\)") as raised:
+        replayed(tmp_path, log, start="+60s")
+    assert raised.value.hint == "the recordings go from 2023-11-14T22:13:20Z to 2023-11-14T22:13:29.9Z"
     blind = standing_log(tmp_path / "b.mcap", hole=True)
     with pytest.raises(TimemapError, match="no scan could be used: node_not_seen 100"):
         replayed(tmp_path, blind)
@@ -81,6 +84,65 @@ def test_a_half_life_that_the_window_cannot_keep_is_told(tmp_path):
     found = replayed(tmp_path, log, settings=settings).warnings
     assert [w for w in found if "level slow forgets more slowly than its half-life says" in w]
     assert not replayed(tmp_path, log, force=True).warnings
+
+
+def test_too_many_dropped_scans_are_told_with_their_reasons(tmp_path):
+    logs = [standing_log(tmp_path / f"{name}.mcap") for name in "ab"]
+    summary = replayed(tmp_path, *logs)
+    assert summary.data_lost
+    assert summary.warnings == (
+        "50 % of the scans were dropped (duplicate 100), more than input.max_dropped allows (5 %)",
+    )
+    allowed = load(None, {"input": {"max_dropped": 0.5}})
+    summary = replayed(tmp_path, *logs, settings=allowed, force=True)
+    assert (summary.data_lost, summary.warnings) == (False, ())
+
+
+def test_a_recording_of_which_the_cut_left_nothing_is_said_to_be_cut_off(tmp_path):
+    log = write_bag(tmp_path / "a.bag", drive(ROS1, 200), "lz4", chunk_bytes=10**9)
+    log.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    with pytest.raises(UsageError, match=r"no laser scans in .*a\.bag: it is cut off at byte \d+ of \d+"):
+        replayed(tmp_path, log)
+
+
+def test_scans_that_were_not_wanted_are_not_lost(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    assert not replayed(tmp_path, log, start="+9s").data_lost
+
+
+def test_what_is_odd_and_costs_no_data_is_told_and_done(tmp_path):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    standing_log(folder / "run_0.mcap")
+    (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: {version: [")
+    summary = replayed(tmp_path, folder)
+    assert not summary.data_lost
+    assert summary.warnings == (f"{folder}: metadata.yaml cannot be read; all files beside it are",)
+
+
+def test_a_profile_with_other_numbers_is_told(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    settings = load(None, {"profile": "paper", "map": {"radius": 4}})
+    assert replayed(tmp_path, log, settings=settings).warnings == (
+        "profile paper with other numbers than its own: map.radius 4.0 instead of 1.5",
+    )
+
+
+def test_a_map_frame_that_the_robot_carries_is_told(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    carried = replayed(tmp_path, log, settings=load(None, {"input": {"map_frame": "base_link"}}))
+    assert carried.warnings == (
+        "'laser' never moves in 'base_link': that frame moves with the robot, and so would the map",
+    )
+    assert replayed(tmp_path, log, force=True).warnings == ()
+
+
+def test_nodes_that_are_nowhere_near_are_named(tmp_path):
+    log, nodes = standing_log(tmp_path / "a.mcap"), tmp_path / "nodes.csv"
+    nodes.write_text("900 900\n")
+    with pytest.raises(UsageError, match=r"no_node 100 \(--nodes .*nodes\.csv: none is near") as raised:
+        replayed(tmp_path, log, nodes=nodes)
+    assert "'map'" in raised.value.hint
 
 
 def test_scans_that_contradict_what_was_long_held_are_counted_as_lost_and_told(tmp_path):

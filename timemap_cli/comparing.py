@@ -25,6 +25,8 @@ class Comparison:
     nodes: Sequence[Node]
     before: ComparedSide
     after: ComparedSide
+    warnings: tuple[str, ...] = ()
+    hint: str | None = None  # what to try, where nothing was compared or nothing found
 
 
 def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None) -> Comparison:
@@ -35,11 +37,15 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
         if levels[0] == levels[1]:
             raise UsageError(f"level {levels[0]} cannot differ from itself", hint=_level_pair(result, reader))
         slower, faster = sorted(levels, key=reader.levels.index, reverse=True)
-        until_ns = _time_within(reader, result, at or "end")
+        until_ns = _time_within(reader, result, "end" if at is None else at)
         before, after = reader.estimates(slower, until_ns), reader.estimates(faster, until_ns)
         difference = compare(reader.nodes, before, after, radius=reader.radius)
-        sides = (ComparedSide(str(result), level, until_ns) for level in (slower, faster))
-        return Comparison(difference, tuple(reader.nodes), *sides)
+        old_side, new_side = (ComparedSide(str(result), level, until_ns) for level in (slower, faster))
+        warnings = _beyond(reader, result, until_ns)
+        hint = (
+            None if difference.changes else f"{_two_times(reader, result, faster)}\ntimemap changes {result}"
+        )
+        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings, hint)
 
 
 def compare_times(result: Path, level: str, times: tuple[str, str]) -> Comparison:
@@ -49,8 +55,10 @@ def compare_times(result: Path, level: str, times: tuple[str, str]) -> Compariso
         earlier_ns, later_ns = sorted(_time_within(reader, result, time) for time in times)
         before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
         difference = compare(reader.nodes, before, after, radius=reader.radius, only_renewed=True)
-        sides = (ComparedSide(str(result), level, stamp_ns) for stamp_ns in (earlier_ns, later_ns))
-        return Comparison(difference, tuple(reader.nodes), *sides)
+        old_side, new_side = (ComparedSide(str(result), level, ns) for ns in (earlier_ns, later_ns))
+        warnings = _beyond(reader, result, later_ns)
+        hint = None if difference.nodes else _two_times(reader, result, level)
+        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings, hint)
 
 
 def compare_results(one: Path, other: Path, level: str) -> Comparison:
@@ -66,14 +74,14 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
         if not after:
             raise UsageError(
                 f"{old_path} and {new_path} share no nodes",
-                hint=f"timemap replay LOG... --nodes {old_path} -o {new_path} --force",
+                hint=f"timemap replay LOG... --nodes {old_path} -o ANOTHER.timemap.mcap",
             )
         difference = compare(old.nodes, before, after, radius=old.radius)
-        sides = (
+        old_side, new_side = (
             ComparedSide(str(path), level, reader.end_ns)
             for path, reader in ((old_path, old), (new_path, new))
         )
-        return Comparison(difference, tuple(old.nodes), *sides)
+        return Comparison(difference, tuple(old.nodes), old_side, new_side)
 
 
 def newest_result(folder: Path) -> Path:
@@ -106,6 +114,30 @@ def _time_within(reader: ResultReader, result: Path, time: str) -> int:
             hint="+10s or end-5s, counted from these",
         )
     return stamp_ns
+
+
+def _beyond(reader: ResultReader, result: Path, stamp_ns: int) -> tuple[str, ...]:
+    """A warning where a result tells of an earlier time than was asked for."""
+    if stamp_ns <= reader.end_ns:
+        return ()
+    return (f"{result} ends at {format_time(reader.end_ns)}: what it knew then is compared",)
+
+
+def _two_times(reader: ResultReader, result: Path, level: str) -> str:
+    """A comparison of two times to paste that compares something; in words, where none is found."""
+    ends_ns = reader.recording_ends_ns or (reader.end_ns,)
+    middle_ns = (reader.start_ns + reader.end_ns) // 2 // 10**9 * 10**9
+    for earlier_ns, later_ns in ((ends_ns[0], ends_ns[-1]), (middle_ns, reader.end_ns)):
+        if earlier_ns < later_ns and _any_renewed(reader, level, earlier_ns, later_ns):
+            times = f"{format_time(earlier_ns)} {format_time(later_ns)}"
+            return f"timemap diff {result} --level {level} --between {times}"
+    first, last = map(format_time, (reader.start_ns, reader.end_ns))
+    return f"--level {level} --between TIME TIME; the first estimates are of {first}, the last of {last}"
+
+
+def _any_renewed(reader: ResultReader, level: str, earlier_ns: int, later_ns: int) -> bool:
+    before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
+    return any(after[node].stamp_ns > known.stamp_ns for node, known in before.items())
 
 
 def _require_same_map(old_path: Path, old: ResultReader, new_path: Path, new: ResultReader) -> None:

@@ -4,6 +4,7 @@ import dataclasses
 import hashlib
 import json
 import math
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -18,6 +19,7 @@ from timemap_cli.spans import Span
 HalfLife = Span
 Period = Span
 
+_SHOWN = "timemap config shows how settings are written"
 PROFILES = ("default", "paper")
 
 
@@ -158,19 +160,28 @@ def read_yaml(path: Path) -> Mapping[str, Any]:
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
-        raise UsageError(f"no settings file {path}", hint="timemap config > settings.yaml") from error
+        raise UsageError(
+            f"no settings file {path}", hint=f"timemap config > {shlex.quote(str(path))}"
+        ) from error
     except (OSError, UnicodeDecodeError) as error:
-        raise UsageError(f"cannot read the settings file {path}: {error}") from error
+        reason = (error.strerror or str(error)).lower() if isinstance(error, OSError) else "it is not a text"
+        raise UsageError(f"cannot read the settings file {path}: {reason}", hint=_SHOWN) from error
     try:
         values = YAML(typ="safe", pure=True).load(text)
     except (YAMLError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise UsageError(f"{path} is not YAML: {reason}", hint="timemap config > settings.yaml") from error
+        raise UsageError(f"{path} is not YAML: {_yaml_trouble(error)}", hint=_SHOWN) from error
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise UsageError(f"{path} holds no settings", hint="timemap config shows how settings are written")
+        raise UsageError(f"{path} holds no settings", hint=_SHOWN)
     return values
+
+
+def _yaml_trouble(error: Exception) -> str:
+    """What is wrong and in which line, without the library's own advice."""
+    problem, mark = getattr(error, "problem", None), getattr(error, "problem_mark", None)
+    what = " ".join(str(problem or error).replace('in "<unicode string>", ', "at ").split())
+    return f"line {mark.line + 1}: {what}" if mark is not None else what
 
 
 def _profile(layers: list[tuple[str, Mapping[str, Any]]]) -> str:

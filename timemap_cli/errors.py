@@ -1,6 +1,7 @@
 """What may go wrong that a user can mend, and the exit codes."""
 
 from enum import IntEnum
+from pathlib import Path
 
 
 class ExitCode(IntEnum):
@@ -34,3 +35,12 @@ class UsageError(TimemapError):
 
     def __init__(self, message: str, *, hint: str | None = None) -> None:
         super().__init__(message, hint=hint, exit_code=ExitCode.USAGE)
+
+
+def no_such_file(path: Path, otherwise: str) -> UsageError:
+    """The error for a path at which nothing is: what is called much like it is proposed, or `otherwise`."""
+    from difflib import get_close_matches
+
+    names = [one.name for one in path.parent.iterdir()] if path.parent.is_dir() else []
+    near = [str(path.with_name(name)) for name in get_close_matches(path.name, sorted(names), 1)]
+    return UsageError(f"there is no file {path}", hint=near[0] if near else otherwise)

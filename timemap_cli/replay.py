@@ -21,6 +21,7 @@ from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.learner import Learnt, Round
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer
+from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
@@ -84,7 +85,7 @@ def replay(
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
         summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
-        _require_some_use(summary)
+        _require_some_use(summary, plan, start=start, end=end, nodes=nodes)
         metadata = _metadata(settings, recordings, summary)
         changes = changes_document(writing.tracker.events, observing.newest_ns)
         result.finish(metadata, dump(settings), _report(plan, summary), changes)
@@ -111,6 +112,11 @@ class _Observing:
     def damage(self) -> tuple[str, ...]:
         """What is wrong with the recordings, as far as read."""
         return tuple(f"{r.path}: {problem}" for r in self._recordings for problem in r.problems)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is odd about the recordings, while nothing of them is lost."""
+        return tuple(f"{r.path}: {remark}" for r in self._recordings for remark in r.remarks)
 
     def set_aside(self, scans: int) -> None:
         """Take note that so many of the scans seen were not learnt."""
@@ -211,9 +217,8 @@ def _summary(
     output: Path, settings: Settings, plan: Survey, observing: _Observing, writing: _Writing, seconds: float
 ) -> ReplaySummary:
     read, dropped = observing.counts.read, observing.counts.dropped
-    unwanted = sum(dropped.get(reason, 0) for reason in _NOT_LOST)
-    lost = sum(dropped.values()) - unwanted
-    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage)
+    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks)
+    too_many = _too_many_dropped(dropped, read, settings.input.max_dropped)
     return ReplaySummary(
         result=output,
         nodes=len(writing.nodes),
@@ -222,19 +227,47 @@ def _summary(
         scans_used=observing.used,
         dropped=dict(sorted(dropped.items())),
         seconds=seconds,
-        warnings=(*warnings, *_other_warnings(observing, writing)),
-        data_lost=bool(observing.damage) or lost > settings.input.max_dropped * (read - unwanted),
+        warnings=(*warnings, *_profile_warnings(settings), *_other_warnings(observing, writing), *too_many),
+        data_lost=bool(observing.damage or too_many),
     )
 
 
-def _require_some_use(summary: ReplaySummary) -> None:
-    if not summary.scans_used:
-        reasons = (
-            ", ".join(f"{reason} {count}" for reason, count in summary.dropped.items()) or "there is none"
+def _too_many_dropped(dropped: Mapping[str, int], read: int, allowed: float) -> tuple[str, ...]:
+    """A warning where a larger share of the scans was lost than is allowed."""
+    lost = {reason: count for reason, count in sorted(dropped.items()) if count and reason not in _NOT_LOST}
+    wanted = read - sum(dropped.get(reason, 0) for reason in _NOT_LOST)
+    if sum(lost.values()) <= allowed * wanted:
+        return ()
+    share = f"{100 * sum(lost.values()) / wanted:.3g} % of the scans were dropped"
+    reasons = ", ".join(f"{reason} {count}" for reason, count in lost.items())
+    return (f"{share} ({reasons}), more than input.max_dropped allows ({100 * allowed:.3g} %)",)
+
+
+def _profile_warnings(settings: Settings) -> tuple[str, ...]:
+    found = overridden(settings)
+    return (
+        (f"profile {settings.profile} with other numbers than its own: {', '.join(found)}",) if found else ()
+    )
+
+
+def _require_some_use(
+    summary: ReplaySummary, plan: Survey, *, start: str | None, end: str | None, nodes: Path | None
+) -> None:
+    """UsageError where the options left no scan, TimemapError where none could be used."""
+    if summary.scans_used:
+        return
+    reasons = ", ".join(f"{reason} {count}" for reason, count in summary.dropped.items()) or "there is none"
+    message = f"no scan could be used: {reasons}"
+    if summary.dropped.keys() == {"outside_time"}:
+        cut = [f"{name} {time}" for name, time in (("--start", start), ("--end", end)) if time is not None]
+        raise UsageError(f"{message} ({' '.join(cut)})", hint=_span_hint(plan))
+    if nodes is not None and "no_node" in summary.dropped.keys() <= {"outside_time", "no_node"}:
+        frame = plan.selection.map_frame
+        raise UsageError(
+            f"{message} (--nodes {nodes}: none is near enough)",
+            hint=f"nodes where the robot drives, in metres of the frame '{frame}'",
         )
-        raise TimemapError(
-            f"no scan could be used: {reasons}", hint="timemap info LOG... tells what the recordings hold"
-        )
+    raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
 
 
 def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:

@@ -189,5 +189,10 @@ _RESERVED = frozenset(("true", "false", "yes", "no", "on", "off", "y", "n", "nul
 
 def _wrong(value: object, what: str) -> ValueError:
     """The refusal of a value, shown short and in one line."""
-    text = " ".join(f"'{value}'".split() if isinstance(value, str) else str(value).split())
+    if value is None:
+        text = "empty"
+    elif isinstance(value, bool):
+        text = str(value).lower()  # as YAML has it
+    else:
+        text = " ".join(f"'{value}'".split() if isinstance(value, str) else str(value).split())
     return ValueError(f"is {text if len(text) <= 60 else text[:57] + '...'}, {what}")

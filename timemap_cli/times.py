@@ -49,6 +49,8 @@ def format_time(stamp_ns: int) -> str:
 
 def _parse_rfc_3339(text: str) -> int:
     match = _RFC_3339.fullmatch(text)
+    if match is None and _RFC_3339.fullmatch(f"{text}Z"):
+        raise UsageError(f"'{text}' has no time zone", hint=f"{text}Z, or with an offset: {text}+02:00")
     if match is None:
         raise _not_a_time(text)
     date, clock, fraction, offset = match.groups()
@@ -63,7 +65,7 @@ def _parse_rfc_3339(text: str) -> int:
 def _not_a_time(text: str) -> UsageError:
     return UsageError(
         f"'{text}' is not a time",
-        hint="+10s or end-5s, counted from the start or the end\n"
+        hint="+10s or end-5min, counted from the start or the end (ms, s, min or h)\n"
         "2024-05-01T12:00:00Z, or with an offset: 2024-05-01T14:00:00+02:00\n"
         "1714564800000000000 (nanoseconds since 1970)",
     )

@@ -1,6 +1,8 @@
 """Running the program inside the test, with its own streams."""
 
 import io
+import subprocess
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -27,3 +29,10 @@ def timemap(*args: object, variables: Mapping[str, str] | None = None, screen: b
     out, err = (Screen(), Screen()) if screen else (io.StringIO(), io.StringIO())
     code = main([str(arg) for arg in args], Terminal(out, err, variables or {}))
     return Outcome(code, out.getvalue(), err.getvalue())
+
+
+def python(code: str, **more):
+    """A Python process that runs some lines."""
+    return subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False, **more
+    )

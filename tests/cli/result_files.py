@@ -29,8 +29,11 @@ def room(level, stamp_ns, *, box: bool, node: int = 0) -> Estimate:
     return Estimate(node, level, stamp_ns, ranges, sure, sure, samples, status, last_seen_ns)
 
 
-def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", radius=10.0) -> Path:
-    """Write a result; `boxes` lists (seconds from START, {level: whether it sees the box})."""
+def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", radius=10.0, ends=()) -> Path:
+    """Write a result; `boxes` lists (seconds from START, {level: whether it sees the box}).
+
+    Recordings end at those of these seconds that are in `ends`.
+    """
     settings = {"levels": levels, "angle_bins": BINS, "radius": radius, "map_frame": map_frame}
     with ResultWriter(path, **settings) as writer:
         for seconds, seen in boxes:
@@ -40,6 +43,12 @@ def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", r
                 writer.write_estimates(
                     [room(lv, stamp_ns, box=seen[lv], node=node) for lv in levels], stamp_ns
                 )
+            if seconds in ends:
+                latest = {
+                    lv: {n: room(lv, stamp_ns, box=seen[lv], node=n) for n in range(len(nodes))}
+                    for lv in levels
+                }
+                writer.write_maps(latest, nodes, stamp_ns)
         writer.finish({"nodes": str(len(nodes))}, "seed: 0\n", {}, NO_CHANGES)
     return path
 

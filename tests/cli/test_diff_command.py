@@ -108,13 +108,14 @@ def test_results_without_common_nodes_or_settings_cannot_be_compared(tmp_path):
         assert ran.code == 2
         assert said in ran.err
         assert "  try: " in ran.err
+        assert "--force" not in ran.err  # nobody is led to replace a result
 
 
 def test_without_a_result_the_newest_of_the_folder_is_taken_and_named(result, tmp_path):
     newer = write(tmp_path / "newer.timemap.mcap", [(0, all_levels(False))])
     os.utime(newer, (2e9, 2e9))
     ran = timemap("diff", "--level", "long", "mid")
-    assert ran.err == "using newer.timemap.mcap, the newest result in this folder\n"
+    assert ran.err.splitlines()[0] == "using newer.timemap.mcap, the newest result in this folder"
     os.utime(newer, (1e9, 1e9))
     assert timemap("diff", "--level", "long", "mid").err.startswith(f"using {result}, ")
 
@@ -143,6 +144,9 @@ def test_without_any_result_it_is_a_usage_error(tmp_path, monkeypatch):
         ("{r} --level long mid --at soon", "'soon' is not a time"),
         ("{r} --level long mid --at 5", "knows nothing at 5: its estimates go from 2023-11-14T22:13:20Z to"),
         ("{r} --level mid --between 5", "requires 2 arguments"),
+        ("{r} --between +1s --level mid", "--between needs two times"),
+        ("{r} --level long mid --at=", "'' is not a time"),
+        ("{r} --level mid --at=", "--at needs two levels"),
     ],
 )
 def test_what_cannot_be_compared_is_one_error_with_something_to_try(result, args, said):
@@ -169,6 +173,62 @@ def test_exit_code_tells_whether_there_are_differences(result):
     assert timemap("diff", result, "--level", "long", "mid", "--exit-code").code == 4
     assert timemap("diff", result, "--level", "mid", "short", "--exit-code").code == 0
     assert timemap("diff", result, "--level", "long", "mid").code == 0
+
+
+def proposals(ran):
+    return [line.removeprefix("  try: ") for line in ran.err.splitlines() if line.startswith("  try: ")]
+
+
+def test_where_nothing_was_seen_again_the_ends_of_the_recordings_are_proposed(tmp_path):
+    seen = [(0, all_levels(False)), (10, all_levels(False)), (20, all_levels(True)), (30, all_levels(True))]
+    result = write(tmp_path / "r.timemap.mcap", seen, ends=(10, 30))
+    ran = timemap("diff", result, "--level", "mid", "--between", "start", "+1s")
+    assert ran.code == 0
+    assert "Nothing could be compared" in ran.out
+    (proposed,) = proposals(ran)
+    assert proposed.endswith("--level mid --between 2023-11-14T22:13:30Z 2023-11-14T22:13:50Z")
+    found = document(*proposed.removeprefix("timemap diff ").split())
+    assert [change["kind"] for change in found["changes"]] == ["appeared"]
+
+
+def test_of_a_single_recording_its_middle_and_its_end_are_proposed(result):
+    ran = timemap("diff", result, "--level", "mid", "--between", "start", "start")
+    (proposed,) = proposals(ran)
+    assert proposed.endswith("--level mid --between 2023-11-14T22:13:30Z 2023-11-14T22:13:40Z")
+    found = document(*proposed.removeprefix("timemap diff ").split())
+    assert [change["kind"] for change in found["changes"]] == ["appeared"]
+
+
+def test_where_no_node_was_ever_seen_again_the_span_of_the_estimates_is_named(tmp_path):
+    result = write(tmp_path / "once.mcap", [(20, all_levels(False))], ends=(20,))
+    ran = timemap("diff", result, "--level", "mid", "--between", "start", "end")
+    assert proposals(ran) == [
+        "--level mid --between TIME TIME; the first estimates are of 2023-11-14T22:13:40Z, "
+        "the last of 2023-11-14T22:13:40Z"
+    ]
+
+
+def test_nothing_compared_is_not_taken_for_nothing_different(result):
+    nothing = ("diff", result, "--level", "mid", "--between", "start", "start")
+    assert timemap(*nothing, "--exit-code").code == 2
+    assert timemap(*nothing, "--exit-code", "--json").code == 2
+    assert timemap(*nothing).code == 0
+
+
+def test_two_levels_that_agree_point_to_what_both_have_learnt(result):
+    ran = timemap("diff", result, "--level", "mid", "short")
+    assert "Nothing differs" in ran.out
+    assert f"timemap changes {result}" in proposals(ran)
+    assert "--between" in proposals(ran)[0]
+
+
+@pytest.mark.parametrize(
+    "args", [["--level", "long", "mid", "--at", "+1h"], ["--level", "mid", "--between", "start", "+1h"]]
+)
+def test_a_time_after_the_end_is_told(result, args):
+    ran = timemap("diff", result, *args)
+    assert ran.code == 0
+    assert ran.err.startswith(f"warning: {result} ends at 2023-11-14T22:13:40Z: ")
 
 
 def test_the_fixture_writes_what_it_says():

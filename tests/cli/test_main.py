@@ -1,22 +1,12 @@
-import os
-import signal
-import subprocess
-import sys
 from importlib.metadata import entry_points
 
 import click
 import pytest
 
-from tests.cli.program import timemap
+from tests.cli.program import python, timemap
 from timemap_cli import __version__
 from timemap_cli.cli import main as main_module
 from timemap_cli.errors import ExitCode, TimemapError
-
-
-def python(code, **more):
-    return subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False, **more
-    )
 
 
 @pytest.fixture
@@ -77,6 +67,25 @@ def test_a_missing_argument_is_a_usage_error():
     assert ran.err == "error: missing argument 'LOG...'\n  try: timemap replay --help\n"
 
 
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["info", ""],
+        ["replay", "a.bag", ""],
+        ["replay", "a.bag", "-o", ""],
+        ["replay", "a.bag", "--nodes", ""],
+        ["diff", "--level", "long", "mid", ""],
+        ["changes", ""],
+        ["config", "--config", ""],
+    ],
+)
+def test_an_empty_name_is_not_the_current_folder(args):
+    ran = timemap(*args)
+    assert (ran.code, ran.out) == (2, "")
+    where = f" behind {args[-2].replace('-o', '--output')}" if args[-2].startswith("-") else ""
+    assert ran.err == f"error: the name of a file{where} is empty\n  try: timemap {args[0]} --help\n"
+
+
 @pytest.mark.parametrize("code", list(ExitCode))
 def test_an_expected_failure_ends_with_its_own_exit_code(failing, code):
     failing(TimemapError("the scanner is upside down", hint="turn it", exit_code=code))
@@ -122,44 +131,4 @@ def test_importing_the_command_line_imports_no_numpy():
 
 def test_the_installed_command_is_this_program():
     (entry,) = entry_points(group="console_scripts", name="timemap")
-    assert entry.value == "timemap_cli.cli.main:run"
-
-
-def test_a_closed_pipe_ends_quietly():
-    code = "from timemap_cli.cli.main import run; import sys; sys.argv = ['timemap', 'config']; run()"
-    read_end, write_end = os.pipe()
-    os.close(read_end)
-    ran = subprocess.run(
-        [sys.executable, "-c", code], stdout=write_end, stderr=subprocess.PIPE, timeout=60, check=False
-    )
-    os.close(write_end)
-    assert (ran.returncode, ran.stderr) == (0, b"")
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_with_130_and_no_traceback(number):
-    code = (
-        "import os, sys, click\n"
-        "from timemap_cli.cli import main\n"
-        "@click.command()\n"
-        f"def wait(): os.kill(os.getpid(), {int(number)}); import time; time.sleep(30)\n"
-        "main.timemap.add_command(wait)\n"
-        "sys.argv = ['timemap', 'wait']\n"
-        "main.run()\n"
-    )
-    ran = python(code)
-    assert ran.returncode == 130
-    assert "Traceback" not in ran.stderr
-    assert ran.stderr.strip() == "interrupted"
-
-
-def test_names_that_the_terminal_cannot_show_do_not_stop_the_program(tmp_path):
-    settings = tmp_path / "settings.yaml"
-    settings.write_text('input: {map_frame: "\N{GREEK SMALL LETTER MU}"}\n', encoding="utf-8")
-    code = (
-        "import sys\nfrom timemap_cli.cli.main import run\n"
-        f"sys.argv = ['timemap', 'config', '--config', {str(settings)!r}]\nrun()"
-    )
-    ran = python(code, env={"PYTHONIOENCODING": "ascii", "PATH": os.environ["PATH"]})
-    assert ran.returncode == 0
-    assert "\\u03bc" in ran.stdout
+    assert entry.value == "timemap_cli.cli.entry:run"

@@ -124,6 +124,26 @@ def test_a_result_never_takes_the_place_of_a_recording(replays, tmp_path, monkey
     assert replays.calls == []
 
 
+@pytest.mark.parametrize(("option", "what"), [("--config", "settings file"), ("--nodes", "nodes")])
+def test_a_result_never_takes_the_place_of_another_input(replays, tmp_path, monkeypatch, option, what):
+    monkeypatch.chdir(tmp_path)
+    mine = Path("mine")
+    mine.write_text("seed: 1\n")
+    Path("link").symlink_to(mine)
+    for output in (mine, tmp_path / mine, "link"):
+        ran = timemap("replay", "a.mcap", option, mine, "-o", output, "--force")
+        assert (ran.code, ran.out) == (2, "")
+        assert f"would stand where the {what} mine " in ran.err
+    assert replays.calls == []
+    assert mine.read_text() == "seed: 1\n"
+
+
+def test_a_result_does_not_go_to_standard_output(replays):
+    ran = timemap("replay", "a.mcap", "-o", "-")
+    assert (ran.code, replays.calls) == (2, [])
+    assert ran.err == ("error: a result is a file: it does not go to standard output\n  try: -o OUT.mcap\n")
+
+
 def test_the_summary_says_what_became_of_every_scan(replays):
     ran = timemap("replay", "a.mcap")
     assert ran.out.splitlines() == [

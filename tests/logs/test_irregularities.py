@@ -35,7 +35,7 @@ def test_equal_stamps_are_told():
     stamps = STEADY.copy()
     stamps[10] = stamps[9]
     assert time_problems("/scan", times(stamps), times(STEADY)) == [
-        "/scan: 1 scans have the stamp of the one before"
+        "/scan: 1 scan with the stamp of the one before"
     ]
 
 
@@ -64,7 +64,7 @@ def test_a_clock_that_is_set_during_the_recording_is_told():
 
 
 def test_scans_without_a_stamp_are_told():
-    assert "/scan: 2 scans have no stamp" in time_problems("/scan", times([0, 0, 1.0]), times([1, 2, 3.0]))
+    assert "/scan: 2 scans without a stamp" in time_problems("/scan", times([0, 0, 1.0]), times([1, 2, 3.0]))
 
 
 def test_a_jump_of_the_pose_is_told():

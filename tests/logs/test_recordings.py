@@ -27,6 +27,11 @@ def problems_after_reading(path: Path) -> str:
         return " / ".join(recording.problems)
 
 
+def remarks(path: Path) -> str:
+    with Recording(path) as recording:
+        return " / ".join(recording.remarks)
+
+
 def mcap(**options):
     return lambda folder, n=20: recorded.write_mcap(folder / "run.mcap", recorded.drive(ROS2, n), **options)
 
@@ -133,7 +138,8 @@ def test_unreadable_metadata_is_told_and_the_files_are_read(tmp_path):
     folder = split_folder(tmp_path)
     (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: {version: [")
     assert read(folder) == recorded.drive_rows(ROS2)
-    assert "metadata.yaml cannot be read" in problems_after_reading(folder)
+    assert "metadata.yaml cannot be read" in remarks(folder)
+    assert problems_after_reading(folder) == ""
 
 
 def test_folder_of_several_recordings_is_refused_and_they_are_named(tmp_path):
@@ -218,6 +224,7 @@ def test_files_that_are_no_recording(tmp_path, content, message):
         Recording(path)
     assert str(path) in caught.value.message
     assert message in caught.value.message
+    assert caught.value.hint
 
 
 @pytest.mark.parametrize("magic", [b"#ROSBAG V2.0\n", b"\x89MCAP0\r\n", b"SQLite format 3\0"])
@@ -226,8 +233,27 @@ def test_files_that_only_begin_like_a_recording(tmp_path, magic):
     path.write_bytes(magic + bytes(range(100)))
     with pytest.raises(TimemapError, match="cannot be read: ") as caught:
         Recording(path)
+    assert "unpack" not in caught.value.message
     assert str(path) in caught.value.message
     assert caught.value.exit_code == ExitCode.FAILED
+
+
+@pytest.mark.parametrize("length", [9, 13, 20])
+def test_a_recording_cut_off_in_its_first_bytes_is_said_to_be(tmp_path, length):
+    path = FORMATS["mcap"][0](tmp_path)
+    path.write_bytes(path.read_bytes()[:length])
+    with pytest.raises(TimemapError, match="it is cut off or damaged"):
+        Recording(path)
+
+
+def test_a_file_of_a_folder_that_cannot_be_read_is_named(tmp_path):
+    folder = FORMATS["folder_mcap"][0](tmp_path)
+    (inner,) = folder.glob("*.mcap")
+    inner.unlink()
+    inner.mkdir()
+    with pytest.raises(TimemapError) as caught:
+        Recording(folder)
+    assert caught.value.message == f"{folder} cannot be read: {inner}: is a directory"
 
 
 def test_missing_file(tmp_path):
@@ -273,7 +299,25 @@ def test_bag_that_was_never_closed_is_read_whole(tmp_path):
     content[at : at + 8] = bytes(8)
     path.write_bytes(content)
     assert read(path) == recorded.drive_rows(ROS2)
-    assert "index is missing" in problems_after_reading(path)
+    assert "index is missing" in remarks(path)
+    assert problems_after_reading(path) == ""
+
+
+def test_a_bag_cut_off_in_its_only_chunk_gives_the_whole_messages_before(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "none", chunk_bytes=10**9)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    found, whole = read(path), recorded.drive_rows(ROS2, 200)
+    scans = ("scan", "/scan", "laser")
+    assert 80 < len(found[scans]) < 110
+    assert all(found[key] == whole[key][: len(found[key])] for key in found)
+    assert "it is cut off at byte" in problems_after_reading(path)
+    assert remarks(path) == ""
+
+
+def test_a_bag_cut_off_in_its_only_compressed_chunk_says_that_nothing_is_left(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "lz4", chunk_bytes=10**9)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    assert "no message comes whole before that" in problems_after_reading(path)
 
 
 @pytest.mark.parametrize("name", ["mcap", "mcap_lz4", "bag_bz2", "bag_lz4"])

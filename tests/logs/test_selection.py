@@ -127,6 +127,11 @@ def test_a_laser_that_hangs_nowhere_is_named():
     assert tries == ["record /tf_static too; it must say where 'laser' sits on the robot"]
 
 
+def test_a_frame_that_is_called_much_like_the_missing_one_is_named():
+    message, _ = refused(seen([("map", "odom"), ("odom", "base_link"), ("base_link", "base_laser")]))
+    assert message.endswith("(no transform names it, but there is 'base_laser')")
+
+
 def test_without_transforms_and_poses_the_error_says_what_to_record():
     message, tries = refused(seen())
     assert message == "no pose for /scan: there are neither transforms nor poses in log.mcap"

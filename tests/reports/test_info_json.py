@@ -34,6 +34,7 @@ def test_the_fields_that_programs_read():
     assert log["selected"] == {"scan_topics": ["/scan"], "map_frame": "map", "poses": "tf"}
     assert log["problems"] == list(LOG.problems)
     assert found["problems"] == ["odometry drifts", "b.mcap has no scans of /scan"]
+    assert found["span_ns"] == ["976052889859000111", "976055540700000000"]
     assert found["no_return"] == "ignore"
     assert found["missing_returns"] == {"/scan": {"tested": 4172, "contradicted": 0.67}}
 
@@ -41,6 +42,7 @@ def test_the_fields_that_programs_read():
 def test_without_a_selection_the_reason_is_among_the_problems():
     (log,) = document(STUCK)["logs"]
     assert log["selected"] is None
+    assert document(STUCK)["span_ns"] is None
     assert log["problems"][0] == "2 scan topics and none named: /a, /b"
 
 

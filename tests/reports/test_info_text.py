@@ -27,10 +27,24 @@ def test_the_whole_text():
         "  scans      /scan",
         "  map frame  map",
         "  poses      tf (map > base_link > laser)",
+        "  stamps     2000-12-05T21:48:09.859Z to 2000-12-05T22:32:20.7Z, the time that --start and --end mean",
         "  no return  no evidence: 67 % of those sampled pass through something solid (glass, mirrors, black surfaces)",
         "  warning    odometry drifts",
         "  problem    b.mcap has no scans of /scan",
     ]
+
+
+def test_a_recording_without_messages_has_no_date():
+    empty = replace(LOG, start_ns=0, end_ns=0, scans=(), poses=(), other_topics=0, problems=())
+    assert info_text(replace(STUCK, logs=(empty,))).splitlines()[0] == (
+        "intel.mcap: ROS 2 mcap, no message that can be read"
+    )
+
+
+@pytest.mark.parametrize(("posed", "said"), [(1, "it has a pose"), (0, "it has no pose")])
+def test_a_single_scan_is_one(posed, said):
+    log = replace(LOG, scans=(replace(SCAN, count=1, with_pose=posed),))
+    assert f"            {said}" in info_text(replace(INTEL, logs=(log,))).splitlines()
 
 
 def test_it_says_why_a_replay_would_stop_and_what_to_try():

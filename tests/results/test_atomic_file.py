@@ -68,6 +68,48 @@ def test_folder_as_file_and_missing_folder_are_named(tmp_path):
         AtomicFile(tmp_path / "nowhere" / "out.bin")
 
 
+def test_what_may_not_be_replaced_is_kept_with_force_too(tmp_path):
+    path = tmp_path / "notes.txt"
+    path.write_text("mine")
+    for force in (False, True):
+        with pytest.raises(
+            UsageError, match=r"notes\.txt exists and is not .*: it is not replaced"
+        ) as caught:
+            AtomicFile(path, force=force, may_replace=lambda found: found != path)
+        assert "--force" not in caught.value.hint
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("notes.txt", "mine")]
+
+
+def test_a_link_stays_and_what_it_points_to_is_replaced(tmp_path):
+    target, link = tmp_path / "inner" / "one.bin", tmp_path / "newest.bin"
+    target.parent.mkdir()
+    target.write_bytes(b"old")
+    link.symlink_to(target)
+    with AtomicFile(link, force=True) as out:
+        out.write(b"new")
+        out.commit()
+    assert link.is_symlink()
+    assert target.read_bytes() == b"new"
+
+
+def test_a_link_to_nothing_yet_is_followed(tmp_path):
+    link = tmp_path / "newest.bin"
+    link.symlink_to("one.bin")
+    with AtomicFile(link) as out:
+        out.write(b"new")
+        out.commit()
+    assert link.is_symlink()
+    assert (tmp_path / "one.bin").read_bytes() == b"new"
+
+
+def test_a_link_that_leads_nowhere_is_refused(tmp_path):
+    link = tmp_path / "loop.bin"
+    link.symlink_to(link)
+    with pytest.raises(UsageError, match="exists already"):
+        AtomicFile(link)
+    assert link.readlink() == link
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc is a folder nobody can write to")
 def test_folder_that_cannot_be_written_to_is_one_clear_error():
     with pytest.raises(TimemapError, match=r"^cannot write /proc/out\.bin: ") as caught:

@@ -1,4 +1,5 @@
 import json
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -6,6 +7,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap.records import ChunkIndex
 from mcap.stream_reader import StreamReader
+from mcap.writer import Writer
 
 from tests.results.rooms import (
     CHANGES,
@@ -221,6 +223,25 @@ def test_existing_result_is_refused_without_force(result):
     with pytest.raises(UsageError, match="exists already"):
         new_writer(result)
     assert result.read_bytes() == before
+
+
+def test_a_result_is_replaced_with_force_and_nothing_else_is(result, tmp_path):
+    new_writer(result, force=True).__exit__(None, None, None)
+    recording, notes, pipe, cut = (tmp_path / name for name in ("a.bag", "notes.txt", "pipe", "cut.mcap"))
+    recording.write_bytes(b"#ROSBAG V2.0\n")
+    notes.write_text("mine")
+    os.mkfifo(pipe)
+    cut.write_bytes(result.read_bytes()[:-100])
+    other = tmp_path / "other.mcap"
+    with other.open("wb") as out:
+        writer = Writer(out)
+        writer.start()
+        writer.finish()
+    for path in (recording, notes, pipe, cut, other):
+        before = None if path == pipe else path.read_bytes()
+        with pytest.raises(UsageError, match="is not a result of timemap: it is not replaced"):
+            new_writer(path, force=True)
+        assert path.is_fifo() if path == pipe else path.read_bytes() == before
 
 
 def test_report_with_a_nan_is_refused(tmp_path):

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
 from timemap_cli.reports.event_selection import ORDERS, EventSelection, selected
@@ -14,7 +15,7 @@ _KINDS = ("appeared", "vanished", "moved")
 
 
 @click.command(short_help="what changed, where, since when, and at which time scale")
-@click.argument("result", required=False, type=click.Path(path_type=Path))
+@click.argument("result", required=False, type=NAMED_PATH)
 @click.option(
     "--kind", "kinds", multiple=True, type=click.Choice(_KINDS), help="Only these; may be repeated."
 )

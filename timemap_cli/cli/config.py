@@ -4,14 +4,13 @@ from pathlib import Path
 
 import click
 
+from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.config import PROFILES, dump, load
 
 
 @click.command(short_help="print the settings with their units, ranges and meanings")
-@click.option(
-    "--config", "file", type=click.Path(path_type=Path), metavar="FILE", help="Settings file to start from."
-)
+@click.option("--config", "file", type=NAMED_PATH, metavar="FILE", help="Settings file to start from.")
 @click.option("--profile", type=click.Choice(PROFILES), help="Defaults to start from.")
 @click.pass_obj
 def config(terminal: Terminal, file: Path | None, profile: str | None) -> None:

@@ -4,14 +4,13 @@ from pathlib import Path
 
 import click
 
+from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 
 
 @click.command(short_help="what is in recordings, and what a replay would use")
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="LOG...")
-@click.option(
-    "--config", "config_file", type=click.Path(path_type=Path), metavar="FILE", help="Settings file."
-)
+@click.argument("logs", nargs=-1, required=True, type=NAMED_PATH, metavar="LOG...")
+@click.option("--config", "config_file", type=NAMED_PATH, metavar="FILE", help="Settings file.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON (schema timemap.info/1).")
 @click.pass_obj
 def info(terminal: Terminal, logs: tuple[Path, ...], config_file: Path | None, as_json: bool) -> None:

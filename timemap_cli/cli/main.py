@@ -1,11 +1,7 @@
 """The program as a function of its arguments and its terminal, and its commands."""
 
-import signal
-import sys
 from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
-from types import FrameType
-from typing import NoReturn
 
 import click
 
@@ -54,15 +50,6 @@ def main(args: Sequence[str], terminal: Terminal | None = None) -> int:
         return ExitCode.INTERRUPTED
 
 
-def run() -> NoReturn:
-    """Entry of the `timemap` command."""
-    for stream in (sys.stdout, sys.stderr):
-        # A topic's name may hold letters that the terminal's encoding lacks.
-        stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    signal.signal(signal.SIGTERM, _interrupt)
-    sys.exit(main(sys.argv[1:]))
-
-
 def _exit_code(args: Sequence[str], terminal: Terminal) -> int:
     """The code that the command returned; click's own complaints become a UsageError."""
     try:
@@ -87,7 +74,3 @@ def _sentence(text: str) -> str:
 def _system_trouble(error: OSError) -> str:
     reason = (error.strerror or str(error)).lower()
     return f"{error.filename}: {reason}" if error.filename else reason
-
-
-def _interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt

@@ -32,7 +32,12 @@ class ProgressBar:
         return self
 
     def __call__(self, share: float, scans: int) -> None:
-        """Show that `share` (0..1) of the recordings is done and `scans` have been read so far."""
+        """Show that `share` (0..1) of the recordings is done and `scans` have been read so far.
+
+        Raises KeyboardInterrupt once more if one got lost on its way.
+        """
+        if self._terminal.is_interrupted():
+            raise KeyboardInterrupt
         if self._bar is not None:
             self._bar.postfix[0] = scans
             self._bar.update(min(share, 1.0) - self._bar.n)

@@ -1,10 +1,12 @@
 """`timemap replay`: recordings in, one result file out."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.progress import ProgressBar
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.config import PROFILES, load
@@ -14,21 +16,20 @@ if TYPE_CHECKING:
     from timemap_cli.replay import ReplaySummary
 
 _SUFFIXES = (".mcap", ".bag", ".db3", ".zstd")
-_file = click.Path(path_type=Path)
 
 
 @click.command(short_help="replay recordings into a result file")
-@click.argument("logs", nargs=-1, required=True, type=_file, metavar="LOG...")
+@click.argument("logs", nargs=-1, required=True, type=NAMED_PATH, metavar="LOG...")
 @click.option(
     "-o",
     "--output",
-    type=_file,
+    type=NAMED_PATH,
     metavar="OUT.mcap",
     help="Result. [default: LOG's name with .timemap.mcap, here]",
 )
 @click.option("--force", is_flag=True, help="Replace an existing result.")
 @click.option(
-    "--config", "config_file", type=_file, metavar="FILE", help="Settings file; see 'timemap config'."
+    "--config", "config_file", type=NAMED_PATH, metavar="FILE", help="Settings file; see 'timemap config'."
 )
 @click.option(
     "--scan-topic", "scan_topics", multiple=True, metavar="TOPIC", help="Laser scans to use; may be repeated."
@@ -45,7 +46,7 @@ _file = click.Path(path_type=Path)
 )
 @click.option("--end", metavar="TIME", help="Leave out scans from here on.")
 @click.option(
-    "--nodes", type=_file, metavar="FILE", help="Use these nodes: an earlier result, or a list of x y."
+    "--nodes", type=NAMED_PATH, metavar="FILE", help="Use these nodes: an earlier result, or a list of x y."
 )
 @click.option("--seed", type=int, metavar="N", help="Another seed draws other samples.")
 @click.option("--profile", type=click.Choice(PROFILES), help="Defaults below the settings file.")
@@ -75,7 +76,7 @@ def replay(
     """
     settings = load(config_file, _overrides(**flags))
     result = output or default_output(logs[0])
-    _refuse_own_input(result, logs)
+    _refuse_own_input(result, {"recording": logs, "settings file": [config_file], "nodes": [nodes]})
 
     from timemap_cli import replay as replaying
 
@@ -113,14 +114,18 @@ def _overrides(
     return top | {key: value for key, value in (("seed", seed), ("profile", profile)) if value is not None}
 
 
-def _refuse_own_input(output: Path, logs: tuple[Path, ...]) -> None:
-    """UsageError if the result would replace a recording or lie within one."""
+def _refuse_own_input(output: Path, inputs: Mapping[str, Sequence[Path | None]]) -> None:
+    """UsageError if the result would replace something that is read, lie within it, or have no name."""
+    if str(output) == "-":
+        raise UsageError("a result is a file: it does not go to standard output", hint="-o OUT.mcap")
     target = output.resolve()
-    for log in logs:
-        if log.resolve() in (target, target.parent):
-            raise UsageError(
-                f"the result {output} would stand where the recording {log} is", hint="-o OUT.mcap"
-            )
+    for what, paths in inputs.items():
+        for path in paths:
+            if path is not None and path.resolve() in (target, target.parent):
+                verb = "are" if what == "nodes" else "is"
+                raise UsageError(
+                    f"the result {output} would stand where the {what} {path} {verb}", hint="-o OUT.mcap"
+                )
 
 
 def _tell(terminal: Terminal, summary: "ReplaySummary", as_json: bool, quiet: bool) -> ExitCode:

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TextIO
 
@@ -18,6 +18,7 @@ class Terminal:
     stdout: TextIO = field(default_factory=lambda: sys.stdout)
     stderr: TextIO = field(default_factory=lambda: sys.stderr)
     variables: Mapping[str, str] = field(default_factory=lambda: os.environ)
+    is_interrupted: Callable[[], bool] = lambda: False
 
     def result(self, text: str) -> None:
         """Write a result; where the reader went away it has what it wanted, and nothing fails."""
@@ -39,7 +40,11 @@ class Terminal:
     def error(self, error: TimemapError) -> None:
         """Say what went wrong and, below it, what to try."""
         self.stderr.write(f"{self._painted('error:', _RED)} {error.message}\n")
-        for line in (error.hint or "").splitlines():
+        self.hint(error.hint)
+
+    def hint(self, lines: str | None) -> None:
+        """Say what to try, below what was said before; nothing where there is nothing to try."""
+        for line in (lines or "").splitlines():
             self.stderr.write(f"  try: {line}\n")
 
     def is_watched(self) -> bool:

@@ -39,7 +39,9 @@ class BagFile:
     def __init__(self, path: Path) -> None:
         """Open it and read its index; without one, scan it. Raises OSError or DamagedBagError."""
         self._file: IO[bytes] = path.open("rb")
+        self._size = self._file.seek(0, 2)
         self.problems: list[str] = []
+        self.remarks: list[str] = []
         try:
             header = records.file_record(self._file, len(MAGIC))
             if header.fields.get("encryptor"):
@@ -82,7 +84,7 @@ class BagFile:
         """Messages of one chunk; none, and an entry in ``problems``, where it is damaged."""
         try:
             chunk = records.file_record(self._file, span.offset)
-            content = records.chunk_content(chunk, records.record_data(self._file, chunk))
+            content = self._content(chunk)
             data = np.frombuffer(content, np.uint8)
             entries = records.from_index(data, self._index(chunk.stop, len(span.counts)))
             if entries is None or {key: len(entries[key][0]) for key in entries} != span.counts:
@@ -96,6 +98,14 @@ class BagFile:
             if key in wanted
         ]
         return [chosen for part in parts if len(chosen := within(part, start_ns, end_ns))]
+
+    def _content(self, chunk: records.Record) -> bytes:
+        """Uncompressed records of a chunk; of one that the end of the file cuts off, those that are whole."""
+        if chunk.stop <= self._size:
+            return records.chunk_content(chunk, records.record_data(self._file, chunk))
+        if chunk.fields.get("compression") != b"none":
+            raise DamagedBagError("it is cut off")
+        return records.whole_records(records.record_data(self._file, replace(chunk, stop=self._size)))
 
     def _index(self, position: int, count: int) -> list[tuple[int, bytes]]:
         """The ``count`` index records behind a chunk, as far as there are so many."""
@@ -116,17 +126,15 @@ class BagFile:
 
     def _scan(self, header: records.Record) -> tuple[dict[int, Connection], list[BagSpan]]:
         """Connections and chunks found by going through the file as far as it goes."""
-        size = self._file.seek(0, 2)
+        size = self._size
         found: dict[int, Connection] = {}
         spans: list[BagSpan] = []
         position = header.stop
         try:
             while position < size:
                 record = records.file_record(self._file, position)
-                if record.stop > size:
-                    raise DamagedBagError("it is cut off")
                 if record.op == records.CHUNK:
-                    content = records.chunk_content(record, records.record_data(self._file, record))
+                    content = self._content(record)
                     for inner in records.buffer_records(content):
                         if inner.op == records.CONNECTION:
                             one = records.connection(inner, content[inner.start : inner.stop])
@@ -134,12 +142,19 @@ class BagFile:
                     spans += _walked_span(position, content)
                 elif record.op == records.CONNECTION:
                     break
+                if record.stop > size:
+                    raise DamagedBagError("it is cut off")
                 position = record.stop
-            reason = "its index is missing or damaged, as after a crash; all of it is read"
         except (DamagedBagError, struct.error):
-            reason = f"it is cut off at byte {position} of {size}; what comes before is read"
-        self.problems.append(reason)
+            self.problems.append(_cut_off(position, size, spans))
+        else:
+            self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
         return found, spans
+
+
+def _cut_off(position: int, size: int, spans: list[BagSpan]) -> str:
+    rest = "what comes before is read" if spans else "no message comes whole before that"
+    return f"it is cut off at byte {position} of {size}; {rest}"
 
 
 def _walked_span(position: int, content: bytes) -> list[BagSpan]:

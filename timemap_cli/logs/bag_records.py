@@ -142,6 +142,17 @@ def chunk_content(record: Record, data: bytes) -> bytes:
     return data
 
 
+def whole_records(content: bytes) -> bytes:
+    """The records at the beginning of a chunk's content that are there to their last byte."""
+    stop = 0
+    try:
+        for record in buffer_records(content):
+            stop = record.stop
+    except DamagedBagError:
+        return content[:stop]
+    return content
+
+
 def walk(content: bytes) -> Entries:
     """Messages among the records of a chunk, found by going through them one by one."""
     found: dict[int, tuple[list[int], list[int], list[int]]] = {}

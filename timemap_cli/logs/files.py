@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 
@@ -12,7 +13,7 @@ import zstandard
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.logs.bag_file import BagFile
 from timemap_cli.logs.mcap_file import McapFile
 from timemap_cli.logs.raw import Storage
@@ -25,24 +26,34 @@ READERS: dict[bytes, Callable[[Path], Storage]] = {
     b"\x89MCAP0\r\n": McapFile,
     b"SQLite format 3\0": SqliteFile,
 }
+READABLE = "a ROS 1 bag, a ROS 2 bag (its folder or a file of it) or an MCAP file"
 METADATA = "metadata.yaml"
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
 
-def open_files(path: Path, stack: ExitStack) -> tuple[list[Storage], list[str]]:
-    """The files of the recording at ``path``, in order of time, and what is wrong with them.
+@dataclass(frozen=True, slots=True)
+class OpenFiles:
+    """The files of a recording in order of time, what of them is missing, and what is odd but costs nothing."""
+
+    storages: Sequence[Storage]
+    problems: Sequence[str] = ()
+    remarks: Sequence[str] = ()
+
+
+def open_files(path: Path, stack: ExitStack) -> OpenFiles:
+    """Open the files of the recording at ``path``.
 
     ``stack`` closes them. Raises UsageError where there is no recording, and what the readers raise.
     """
     if path.is_dir():
-        paths, problems = _files_of_folder(path)
+        paths, problems, remarks = _files_of_folder(path)
     elif path.exists():
-        paths, problems = [path], []
+        paths, problems, remarks = [path], [], []
     else:
-        raise UsageError(f"there is no file {path}")
+        raise no_such_file(path, READABLE)
     storages = [_open_file(one, stack) for one in paths]
     storages.sort(key=lambda storage: storage.start_ns)
-    return storages, problems
+    return OpenFiles(storages, problems, remarks)
 
 
 def _open_file(path: Path, stack: ExitStack) -> Storage:
@@ -83,7 +94,7 @@ def _refusal(path: Path, head: bytes) -> TimemapError:
             hint="convert it with ROS 1: rosbag fix OLD.bag NEW.bag",
         )
     reason = "it is empty" if not head else "it is neither a ROS 1 bag nor a ROS 2 bag nor an MCAP file"
-    return UsageError(f"{path} is not a recording: {reason}")
+    return UsageError(f"{path} is not a recording: {reason}", hint=READABLE)
 
 
 def _decompressed(path: Path, stack: ExitStack) -> Path:
@@ -95,14 +106,14 @@ def _decompressed(path: Path, stack: ExitStack) -> Path:
     return target
 
 
-def _files_of_folder(folder: Path) -> tuple[list[Path], list[str]]:
-    """The storage files of a bag folder: those its metadata names, or all where it has none."""
+def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
+    """The storage files of a bag folder, those its metadata names or all where it has none; problems and remarks."""
     try:
         names = _listed_names(folder / METADATA)
     except FileNotFoundError:
-        return _found_files(folder), []
+        return _found_files(folder), [], []
     except (YAMLError, UnicodeDecodeError, KeyError, TypeError):
-        return _found_files(folder), [f"{METADATA} cannot be read; all files beside it are"]
+        return _found_files(folder), [], [f"{METADATA} cannot be read; all files beside it are"]
     paths, problems = [], []
     for name in names:
         # Older rosbag2 names a compressed file without the suffix it gave it.
@@ -113,7 +124,7 @@ def _files_of_folder(folder: Path) -> tuple[list[Path], list[str]]:
             problems.append(f"{name} is missing, although {METADATA} names it")
     if not paths:
         raise UsageError(f"{folder} holds none of the files that its {METADATA} names")
-    return paths, problems
+    return paths, problems, []
 
 
 def _listed_names(metadata: Path) -> list[str]:
@@ -126,7 +137,7 @@ def _found_files(folder: Path) -> list[Path]:
     heads = {one: _head(one) for one in sorted(folder.iterdir()) if one.is_file()}
     paths = [one for one, head in heads.items() if head.startswith(ZSTD_MAGIC) or _reader(head)]
     if not paths:
-        raise UsageError(f"{folder} holds no recording")
+        raise UsageError(f"{folder} holds no recording", hint=READABLE)
     if len({_stem(one) for one in paths}) > 1:
         raise UsageError(
             f"{folder} holds several recordings; name those you want",

@@ -69,6 +69,9 @@ class Inspection:
     logs: tuple[LogInfo, ...]
     selection: Selection | None  # None: a replay would end with `trouble`
     trouble: UsageError | None
+    span_ns: (
+        tuple[int, int] | None
+    )  # from the first scan to the last, by their stamps; None without a selection
     chains: tuple[tuple[str, ...], ...]  # frames from the map to each laser, where poses come from transforms
     missing_returns: dict[str, MissingReturns]  # of each selected topic
     no_return: str | None  # "clear" or "ignore"; None without a selection
@@ -108,6 +111,7 @@ def inspect_recordings(recordings: Sequence[Recording], settings: Settings) -> I
         logs=tuple(logs),
         selection=plan.selection if plan else None,
         trouble=trouble,
+        span_ns=plan.span_ns if plan else None,
         chains=_chains(seen, plan),
         missing_returns=dict(plan.missing_returns) if plan else {},
         no_return=plan.no_return if plan else None,
@@ -171,7 +175,7 @@ class _LogReader:
         self._look_up(None)
         scans = tuple(statistics.outcome() for statistics in self._scans.values())
         poses_found = tuple(self._pose_infos())
-        problems = [*recording.problems, *self._pose_topic_problems()]
+        problems = [*recording.problems, *recording.remarks, *self._pose_topic_problems()]
         problems += [problem for statistics in self._scans.values() for problem in statistics.problems()]
         return LogInfo(
             path=str(recording.path),
@@ -225,7 +229,8 @@ class _LogReader:
 
     def _pose_topic_problems(self) -> list[str]:
         found = [
-            f"{topic}: {count} messages {reason}" for (topic, reason), count in sorted(self._bad.items())
+            f"{topic}: {count} {'message' if count == 1 else 'messages'} {reason}"
+            for (topic, reason), count in sorted(self._bad.items())
         ]
         rejected = max((source.rejected for source in self._sources.values()), default=0)
         if rejected:

@@ -64,7 +64,7 @@ def duration(seconds: float) -> str:
 
 def _unstamped(topic: str, stamps_ns: Int64s) -> list[str]:
     unset = int(np.count_nonzero(stamps_ns == 0))
-    return [f"{topic}: {unset} scans have no stamp"] if unset else []
+    return [f"{topic}: {_many(unset, 'scan')} without a stamp"] if unset else []
 
 
 def _backward_steps(topic: str, stamps_ns: Int64s) -> list[str]:
@@ -74,7 +74,7 @@ def _backward_steps(topic: str, stamps_ns: Int64s) -> list[str]:
     if back:
         found.append(f"{topic}: stamps step back {_times(back)}, by up to {duration(-steps.min())}")
     if same:
-        found.append(f"{topic}: {same} scans have the stamp of the one before")
+        found.append(f"{topic}: {_many(same, 'scan')} with the stamp of the one before")
     return found
 
 

@@ -41,6 +41,7 @@ class McapFile:
         self.format = {"ros2": "ROS 2 mcap", "ros1": "MCAP (ros1)"}.get(profile, "MCAP")
         self.metadata_names = contents.metadata_names
         self.start_ns, self.end_ns = contents.start_ns, contents.end_ns
+        self.remarks: list[str] = []
         self.problems: list[str] = [contents.problem] if contents.problem else []
         self.connections = tuple(
             _connection(channel, contents.schemas.get(channel.schema_id), contents.counts.get(key, 0))

@@ -74,7 +74,7 @@ class Storage(Protocol):
 
     ``start_ns``, ``end_ns``: log times of the first and the last message, both 0 where there is none.
     ``problems`` are sentences about damage, found on opening or while reading; what is not damaged is read
-    all the same.
+    all the same. ``remarks`` are about what is odd and costs no data.
     """
 
     format: str
@@ -82,6 +82,7 @@ class Storage(Protocol):
     start_ns: int
     end_ns: int
     problems: list[str]
+    remarks: list[str]
 
     def stretches(
         self, connections: Collection[int], start_ns: int | None, end_ns: int | None

@@ -53,7 +53,7 @@ class Recording:
 
     ``start_ns``, ``end_ns``: log times of the first and the last message, both 0 where there is none.
     ``topics`` are in order of name. ``problems`` are sentences about data that is damaged or missing;
-    reading may add to them.
+    reading may add to them. ``remarks`` are about what is odd and costs no data.
     """
 
     def __init__(self, path: Path) -> None:
@@ -65,10 +65,11 @@ class Recording:
         self._files = ExitStack()
         try:
             with _translated(path):
-                self._storages, self._problems = open_files(path, self._files)
+                self._opened = open_files(path, self._files)
         except BaseException:
             self._files.close()
             raise
+        self._storages = self._opened.storages
         self._decoders = DecoderCache()
         self.format = self._storages[0].format
         filled = [storage for storage in self._storages if any(one.count for one in storage.connections)]
@@ -84,7 +85,12 @@ class Recording:
     def problems(self) -> tuple[str, ...]:
         """What is damaged or missing, as far as it has been noticed."""
         of_files = [problem for storage in self._storages for problem in storage.problems]
-        return tuple(dict.fromkeys([*self._problems, *of_files]))
+        return tuple(dict.fromkeys([*self._opened.problems, *of_files]))
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is odd, while all data is there."""
+        return (*self._opened.remarks, *(remark for storage in self._storages for remark in storage.remarks))
 
     def batches(
         self, topics: Collection[str], *, start_ns: int | None = None, end_ns: int | None = None
@@ -128,7 +134,7 @@ def open_recordings(paths: Sequence[Path]) -> list[Recording]:
     try:
         for path in paths:
             if any(path.resolve() == other.path.resolve() for other in recordings):
-                raise UsageError(f"{path} is given twice")
+                raise UsageError(f"{path} is given twice", hint="name each recording once")
             recordings.append(Recording(path))
     except BaseException:
         for recording in recordings:
@@ -145,5 +151,14 @@ def _translated(path: Path) -> Iterator[None]:
     except TimemapError:
         raise
     except FOREIGN_ERRORS as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise TimemapError(f"{path} cannot be read: {reason or type(error).__name__}") from error
+        raise TimemapError(f"{path} cannot be read: {_reason(error, path)}") from error
+
+
+def _reason(error: Exception, path: Path) -> str:
+    """What went wrong, in words for who does not know the library; the file, where it is one of a folder."""
+    if isinstance(error, OSError) and error.strerror:
+        within = error.filename if error.filename and Path(error.filename) != path else None
+        return f"{within}: {error.strerror.lower()}" if within else error.strerror.lower()
+    if isinstance(error, AssertionError | EOFError | KeyError | struct.error) or not str(error):
+        return "its parts do not fit together; it is cut off or damaged"
+    return str(error)

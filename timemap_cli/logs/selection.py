@@ -258,6 +258,8 @@ def _family(frames: Frames, frame: str) -> str:
     if others:
         return f"only to {_some(others)}"
     rest = frames.names() - {frame}
+    if near := get_close_matches(frame, sorted(rest), 1):
+        return f"no transform names it, but there is '{near[0]}'"
     return f"no transform names it; there are {_some(rest)}" if rest else "there are no transforms"
 
 

@@ -31,6 +31,7 @@ class SqliteFile:
         metadata = self._reader.metadata
         self.start_ns = metadata.start_time if metadata.message_count else 0
         self.end_ns = metadata.end_time - 1 if metadata.message_count else 0
+        self.remarks: list[str] = []
         self.problems: list[str] = []
         journal = path.with_name(f"{path.name}-wal")
         if journal.exists() and journal.stat().st_size:

@@ -2,16 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, pairwise
 
 import numpy as np
 
 from timemap_cli.config import InputSettings, Settings
+from timemap_cli.errors import UsageError
 from timemap_cli.logs.batches import PoseBatch, ScanBatch
 from timemap_cli.logs.beams import Beams, settle
 from timemap_cli.logs.frames import Frames
 from timemap_cli.logs.missing_returns import MissingReturns, examine
-from timemap_cli.logs.poses import PoseSource
+from timemap_cli.logs.poses import TF, PoseSource
 from timemap_cli.logs.recordings import Recording
 from timemap_cli.logs.sampling import Sample, take_sample
 from timemap_cli.logs.selection import (
@@ -61,7 +62,10 @@ def survey(recordings: Sequence[Recording], settings: Settings) -> Survey:
     UsageError where there are no scans or no poses, or several and none named; it lists lines to paste.
     """
     topics = topics_of(recordings)
-    candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+    try:
+        candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+    except UsageError as error:
+        raise _with_damage(error, recordings) from error
     return survey_sample(recordings, take_sample(recordings, candidates), candidates, settings)
 
 
@@ -80,8 +84,18 @@ def survey_sample(
             missing[topic] = _examined(sample, topic, beams, poses, selection, settings.map.radius)
         if not _are_clear(missing.get(topic), settings.input):
             beams |= {key: b.ignoring_missing() for key, b in beams.items() if key[1] == topic}
-    problems = _problems(recordings, sample, poses, selection) + _short_sighted(beams, settings)
+    problems = (
+        *_problems(recordings, sample, poses, selection),
+        *_carried(seen, sample, selection),
+        *_short_sighted(beams, settings),
+    )
     return Survey(selection, beams, missing, problems, _spans_ns(recordings, sample, selection))
+
+
+def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:
+    """The same error, and what is wrong with the recordings: that may be why."""
+    damage = "; ".join(f"{recording.path}: {one}" for recording in recordings for one in recording.problems)
+    return UsageError(f"{error.message} ({damage})", hint=error.hint) if damage else error
 
 
 def topics_of(recordings: Sequence[Recording]) -> dict[str, str]:
@@ -217,6 +231,22 @@ def _problems(
             if topic not in posed
         ]
     return tuple(found)
+
+
+def _carried(seen: Seen, sample: Sample, selection: Selection) -> tuple[str, ...]:
+    """A sentence for every laser that cannot move in the map frame, because the robot carries both."""
+    if selection.pose != TF or not seen.frames.roots_of(selection.map_frame):
+        return ()
+    fixed = {frozenset((batch.parent, batch.child)) for batch in sample.static_transforms}
+    lasers = dict.fromkeys(
+        frame for topic in selection.scan_topics for frame in seen.scan_frames.get(topic, ())
+    )
+    chains = {laser: seen.frames.path(selection.map_frame, laser) for laser in lasers}
+    return tuple(
+        f"'{laser}' never moves in '{selection.map_frame}': that frame moves with the robot, and so would the map"
+        for laser, chain in chains.items()
+        if all(frozenset(pair) in fixed for pair in pairwise(chain))
+    )
 
 
 def _short_sighted(beams: Mapping[tuple[int, str], Beams], settings: Settings) -> tuple[str, ...]:

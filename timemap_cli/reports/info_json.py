@@ -25,6 +25,7 @@ def info_document(inspection: Inspection) -> dict[str, object]:
     return {
         "schema": "timemap.info/1",
         "logs": [_log(log, selected, trouble) for log in inspection.logs],
+        "span_ns": [str(stamp_ns) for stamp_ns in inspection.span_ns] if inspection.span_ns else None,
         "no_return": inspection.no_return,
         "missing_returns": {topic: _missing(found) for topic, found in inspection.missing_returns.items()},
         "problems": [*trouble, *warnings, *inspection.problems],

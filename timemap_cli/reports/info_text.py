@@ -24,9 +24,18 @@ def _log(log: LogInfo) -> list[str]:
     if log.other_topics:
         rows.append(("", f"and {log.other_topics} other {_plural('topic', log.other_topics)}"))
     rows += _list("problem", log.problems)
-    length = duration((log.end_ns - log.start_ns) / 1e9)
-    title = f"{log.path}: {log.format}, {length} from {format_time(log.start_ns // 10**6 * 10**6)}"
-    return [title, *_columns(rows)]
+    return [f"{log.path}: {log.format}, {_extent(log)}", *_columns(rows)]
+
+
+def _extent(log: LogInfo) -> str:
+    """How long it is and when it was recorded, by log times."""
+    if log.end_ns == 0:
+        return "no message that can be read"
+    return f"{duration((log.end_ns - log.start_ns) / 1e9)} from {_to_the_millisecond(log.start_ns)}"
+
+
+def _to_the_millisecond(stamp_ns: int) -> str:
+    return format_time(stamp_ns // 10**6 * 10**6)
 
 
 def _scan(scan: ScanTopic) -> Iterator[Row]:
@@ -42,7 +51,7 @@ def _scan(scan: ScanTopic) -> Iterator[Row]:
     yield "", _kinds(scan.beams)
     for text in scan.found:
         yield "", text
-    yield "", f"{_of(scan.with_pose, scan.count)} scans have a pose"
+    yield "", _posed(scan.with_pose, scan.count)
 
 
 def _kinds(beams: BeamCounts) -> str:
@@ -76,6 +85,9 @@ def _outlook(inspection: Inspection) -> list[str]:
         ("map frame", selection.map_frame),
         ("poses", f"{selection.pose} ({poses})" if poses else selection.pose),
     ]
+    if inspection.span_ns is not None:
+        begin, end = map(_to_the_millisecond, inspection.span_ns)
+        rows.append(("stamps", f"{begin} to {end}, the time that --start and --end mean"))
     found = [inspection.missing_returns.get(topic) for topic in selection.scan_topics]
     rows += [("no return", _no_return(test, inspection.no_return)) for test in found]
     rows += _list("warning", selection.warnings)
@@ -109,8 +121,10 @@ def _columns(rows: Sequence[Row]) -> list[str]:
     return [f"  {word.ljust(width)}  {text}" for word, text in rows]
 
 
-def _of(part: int, whole: int) -> str:
-    return f"all {whole}" if part == whole else f"{part} of {whole}"
+def _posed(part: int, whole: int) -> str:
+    if whole == 1:
+        return "it has a pose" if part else "it has no pose"
+    return f"all {whole} scans have a pose" if part == whole else f"{part} of {whole} scans have a pose"
 
 
 def _percent(part: int, whole: int) -> str:

@@ -2,6 +2,7 @@
 
 import os
 import secrets
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -14,19 +15,24 @@ class AtomicFile:
     """A file for writing that takes its name only when it is complete.
 
     It is written beside its place under a hidden name; `commit` puts it there. Leaving the context without
-    `commit`, by an exception or Ctrl-C too, removes it.
+    `commit`, by an exception or Ctrl-C too, removes it. A symbolic link is followed, as the shell does.
 
-    Raises UsageError if the path exists and `force` is not given, if it is a folder, or if its folder is
-    missing; TimemapError where the system refuses to write.
+    Raises UsageError if the path exists and `force` is not given, if it is a folder or nothing that
+    `may_replace` allows, or if its folder is missing; TimemapError where the system refuses to write.
     """
 
-    def __init__(self, path: Path, *, force: bool = False) -> None:
-        self._path = path
+    def __init__(
+        self, path: Path, *, force: bool = False, may_replace: Callable[[Path], bool] | None = None
+    ) -> None:
+        self._named = path
+        self._path = Path(os.path.realpath(path))
         self._force = force
+        self._may_replace = may_replace
         self._refuse_existing()
-        if not path.parent.is_dir():
-            raise UsageError(f"cannot write {path}: there is no folder {path.parent}")
-        self._beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+        folder = self._path.parent
+        if not folder.is_dir():
+            raise UsageError(f"cannot write {path}: there is no folder {folder}", hint=f"mkdir -p {folder}")
+        self._beside = self._path.with_name(f".{self._path.name}.{secrets.token_hex(4)}.part")
         try:
             self._stream: BinaryIO = self._beside.open("xb", buffering=1 << 20)
         except OSError as error:
@@ -71,14 +77,21 @@ class AtomicFile:
 
     def _refuse_existing(self) -> None:
         if self._path.is_dir():
-            raise UsageError(f"cannot write {self._path}: it is a folder")
-        if self._path.exists() and not self._force:
+            raise UsageError(f"cannot write {self._named}: it is a folder", hint="-o FILE writes elsewhere")
+        if not os.path.lexists(self._path):
+            return
+        if self._may_replace is not None and not self._may_replace(self._path):
             raise UsageError(
-                f"{self._path} exists already", hint="--force replaces it, -o FILE writes somewhere else"
+                f"{self._named} exists and is not a result of timemap: it is not replaced",
+                hint="-o FILE writes somewhere else",
+            )
+        if not self._force:
+            raise UsageError(
+                f"{self._named} exists already", hint="--force replaces it, -o FILE writes somewhere else"
             )
 
     def _failure(self, error: OSError) -> TimemapError:
-        return TimemapError(f"cannot write {self._path}: {(error.strerror or str(error)).lower()}")
+        return TimemapError(f"cannot write {self._named}: {(error.strerror or str(error)).lower()}")
 
 
 def _sync_folder(folder: Path) -> None:

@@ -15,7 +15,7 @@ from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
 from mcap.summary import Summary
 from zstandard import ZstdError
 
-from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.results import channels
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -79,6 +79,10 @@ class ResultFile:
             if chunk.message_start_time <= end_ns:
                 yield from self._messages_of(chunk, wanted, end_ns)
 
+    def times_ns(self, topic: str) -> tuple[int, ...]:
+        """Log times of the messages of a topic, in order."""
+        return self._guarded(lambda: tuple(m.log_time for _, _, m in self._reader.iter_messages([topic])))
+
     def last_message(self, topic: str) -> bytes | None:
         """The last message of a topic, found from the end of the file; None if there is none."""
         wanted = self._channels_of([topic])
@@ -139,6 +143,17 @@ class ResultFile:
         )
 
 
+def is_result(path: Path) -> bool:
+    """Whether there is a result, as far as its own metadata tells; damaged ones are none."""
+    if not path.is_file():  # opening a pipe would wait for somebody to write
+        return False
+    try:
+        ResultFile(path).close()
+    except TimemapError:
+        return False
+    return True
+
+
 def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[tuple[str, bytes]]:
     """Messages of some channels in an unpacked chunk, found by stepping from record to record."""
     place = 0
@@ -158,7 +173,7 @@ def _open(path: Path) -> BinaryIO:
     try:
         stream = path.open("rb")
     except FileNotFoundError as error:
-        raise UsageError(f"there is no file {path}") from error
+        raise no_such_file(path, "results are made by `timemap replay`") from error
     except OSError as error:
         raise _unreadable(path, error) from error
     head = stream.read(16)

@@ -72,6 +72,11 @@ class ResultReader:
         changes: dict[str, Any] = json.loads(self._file.attachment(channels.CHANGES))
         return changes
 
+    @property
+    def recording_ends_ns(self) -> tuple[int, ...]:
+        """When recordings ended that had taught something: the maps of the levels are written then."""
+        return self._file.times_ns(LevelTopic.MAP.of(self.levels[0]))
+
     def estimates(self, level: str, until_ns: int | None = None) -> dict[int, Estimate]:
         """Each node's newest estimate of a level, not later than a time; nodes in order of their number.
 

@@ -19,6 +19,7 @@ from timemap_cli.results import channels, definitions
 from timemap_cli.results.atomic_file import AtomicFile
 from timemap_cli.results.change_messages import pack_change, pack_markers
 from timemap_cli.results.channels import LevelTopic
+from timemap_cli.results.container import is_result
 from timemap_cli.results.layouts import pack_scans, pack_statuses
 from timemap_cli.results.messages import NodeFrames, pack_grid, pack_points
 
@@ -32,7 +33,8 @@ class ResultWriter:
     behind. Messages come in log-time order, so the log time of an estimate is its own stamp, or that of the
     message before where it is older. The same calls give the same bytes.
 
-    Raises UsageError if the path exists and `force` is not given, TimemapError where it cannot be written.
+    Raises UsageError if the path exists and `force` is not given, or if it is anything else than a result;
+    TimemapError where it cannot be written.
     """
 
     def __init__(
@@ -58,7 +60,7 @@ class ResultWriter:
         self._counts: dict[int, int] = {}
         self._first_ns: int | None = None
         self._now_ns = 0
-        self._file = AtomicFile(path, force=force)
+        self._file = AtomicFile(path, force=force, may_replace=is_result)
         self._mcap = Writer(
             cast(IO[bytes], self._file), compression=CompressionType.ZSTD, index_types=IndexType.ALL
         )
