@@ -194,10 +194,12 @@ class _Writing:
         self.nodes, self._newest_ns = nodes, made.newest_ns
         self._result.write_nodes(nodes, made.newest_ns)
         self._result.write_estimates(made.estimates, made.newest_ns)
-        for found in made.estimates:
-            self._latest[found.level][found.node] = found
+        for estimate in made.estimates:
+            self._latest[estimate.level][estimate.node] = estimate
             self._maps_are_due = True
-        self._result.write_changes(self.tracker.update(nodes, self._latest, made.estimates), made.newest_ns)
+        found = self.tracker.update(nodes, self._latest, made.estimates)
+        if found:
+            self._result.write_changes(found, self.tracker.events, made.newest_ns)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:

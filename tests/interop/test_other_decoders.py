@@ -13,6 +13,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from tests.results.events import write_changing_room
 from tests.results.rooms import write_room
 from timemap_cli.results.writer import VIEWERS_SPAN_NS
 
@@ -27,9 +28,20 @@ def result(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def changing(tmp_path_factory):
+    path = tmp_path_factory.mktemp("room") / "changing.timemap.mcap"
+    write_changing_room(path)
+    return path
+
+
+@pytest.fixture(scope="module")
 def decoded(result):
-    """(topic, type, log time, message) of every message, decoded by mcap-ros2-support."""
-    with result.open("rb") as stream:
+    return by_mcap_ros2_support(result)
+
+
+def by_mcap_ros2_support(path):
+    """(topic, type, log time, message) of every message."""
+    with path.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
         return [(c.topic, s.name, m.log_time, o) for s, c, m, o in reader.iter_decoded_messages()]
 
@@ -74,6 +86,12 @@ def test_two_unrelated_decoders_read_the_same(result, decoded):
     assert sorted_plain(one) == sorted_plain(by_rosbags(result))
 
 
+def test_two_unrelated_decoders_read_the_same_changes(changing):
+    one = [(topic, kind, at, plain(message)) for topic, kind, at, message in by_mcap_ros2_support(changing)]
+    assert {"timemap_msgs/msg/Change", "visualization_msgs/msg/MarkerArray"} < {kind for _, kind, *_ in one}
+    assert sorted_plain(one) == sorted_plain(by_rosbags(changing))
+
+
 def test_definitions_in_the_file_are_those_of_ros_2_humble(result):
     humble = get_typestore(Stores.ROS2_HUMBLE)
     with AnyReader([result]) as reader:
@@ -92,7 +110,9 @@ def test_latched_topics_are_transient_local(result):
             assert qos.durability == (QosDurability.TRANSIENT_LOCAL if latched else QosDurability.VOLATILE)
 
 
-def test_result_survives_conversion_to_ros_1_and_back(result, tmp_path):
+@pytest.mark.parametrize("which", ["result", "changing"])
+def test_result_survives_conversion_to_ros_1_and_back(which, tmp_path, request):
+    result = request.getfixturevalue(which)
     program = Path(sys.executable).parent / "rosbags-convert"
     to_ros1 = ["--src", result, "--dst", tmp_path / "one.bag", "--dst-typestore", "ros1_noetic"]
     back = ["--src", tmp_path / "one.bag", "--dst", tmp_path / "two", "--dst-storage", "mcap"]

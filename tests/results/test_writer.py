@@ -8,7 +8,9 @@ from mcap.reader import make_reader
 from mcap.records import ChunkIndex
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
+from rosbags.highlevel import AnyReader
 
+from tests.results.events import write_changing_room
 from tests.results.rooms import (
     CHANGES,
     CONFIG,
@@ -242,6 +244,35 @@ def test_a_result_is_replaced_with_force_and_nothing_else_is(result, tmp_path):
         with pytest.raises(UsageError, match="is not a result of timemap: it is not replaced"):
             new_writer(path, force=True)
         assert path.is_fifo() if path == pipe else path.read_bytes() == before
+
+
+def test_markers_show_all_that_holds_at_their_time(tmp_path):
+    path = tmp_path / "changing.mcap"
+    write_changing_room(path)
+    with AnyReader([path]) as reader:
+        (channel,) = [c for c in reader.connections if c.topic == "/timemap/changes/markers"]
+        shown = [
+            {m.id for m in reader.deserialize(raw, channel.msgtype).markers if m.ns}
+            for _, _, raw in reader.messages([channel])
+        ]
+    assert shown == [{0}, {1}, {1}]
+
+
+def test_every_transition_is_a_message_and_every_round_one_of_markers(tmp_path):
+    path = tmp_path / "changing.mcap"
+    write_changing_room(path)
+    times = {"/timemap/changes": [], "/timemap/changes/markers": []}
+    for topic, message in messages(path):
+        times.get(topic, []).append((message.log_time - T0) // SECOND)
+    assert times == {"/timemap/changes": [0, 10, 10, 20], "/timemap/changes/markers": [0, 10, 20]}
+
+
+def test_markers_are_latched_and_changes_are_not(tmp_path):
+    path = tmp_path / "changing.mcap"
+    write_changing_room(path)
+    qos = {c.topic: c.metadata["offered_qos_profiles"] for c in summary(path).channels.values()}
+    assert "durability: 1\n" in qos["/timemap/changes/markers"]
+    assert "durability: 2\n" in qos["/timemap/changes"]
 
 
 def test_report_with_a_nan_is_refused(tmp_path):

@@ -1,15 +1,17 @@
-"""The messages that tell of change events: one per transition, and the same as markers to look at."""
+"""The messages that tell of change events: one per transition, and what holds as markers to look at."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from timemap_cli.changes.difference import Kind
-from timemap_cli.changes.events import Event, Transition, Turn
+from timemap_cli.changes.events import Event, Transition
 from timemap_cli.changes.hull import hull
 from timemap_cli.results.cdr import CdrBuilder
 
 _LINE_STRIP, _TEXT = 4, 9  # visualization_msgs/Marker
-_ADD, _DELETE = 0, 2
-_LINE_WIDTH_M, _TEXT_HEIGHT_M, _TEXT_Z_M = 0.04, 0.2, 0.3
+_ADD, _DELETE_ALL = 0, 3
+_LINE_WIDTH_M, _TEXT_HEIGHT_M, _TEXT_APART_M = 0.04, 0.2, 0.2
+_OUTLINE_Z_M, _TEXT_Z_M = 0.1, 0.3  # above the points and grids, which lie at 0
 # Okabe and Ito's colours, told apart by every kind of eye.
 COLOURS = {
     Kind.APPEARED: (0.0, 0.62, 0.45),
@@ -44,45 +46,84 @@ def pack_change(transition: Transition, stamp_ns: int, map_frame: str) -> bytes:
     return cdr.message()
 
 
-def pack_markers(transitions: Sequence[Transition], stamp_ns: int, map_frame: str) -> bytes:
-    """`visualization_msgs/MarkerArray`: an outline and a text for every event that holds; deleted when it is undone."""
-    newest = {transition.event.id: transition for transition in transitions}  # the last word on each
+def pack_markers(events: Sequence[Event], stamp_ns: int, map_frame: str) -> bytes:
+    """`visualization_msgs/MarkerArray`: an outline and a text for each of the events that holds, and nothing else.
+
+    It first deletes all markers of the topic, since a viewer that jumps in time or begins late takes the newest
+    message only.
+    """
+    markers = [_Marker(action=_DELETE_ALL), *_markers(events)]
     cdr = CdrBuilder()
-    cdr.pack("I", 2 * len(newest))
-    for transition in newest.values():
-        event = transition.event
-        action = _ADD if event.holds and transition.turn is not Turn.DROPPED else _DELETE
-        for name, kind in (("outline", _LINE_STRIP), ("text", _TEXT)):
-            cdr.header(stamp_ns, map_frame)
-            cdr.string(f"timemap/{name}")
-            cdr.pack("i", event.id, kind, action)
-            _marker_body(cdr, event, kind)
+    cdr.pack("I", len(markers))
+    for marker in markers:
+        cdr.header(stamp_ns, map_frame)
+        marker.write(cdr)
     return cdr.message()
 
 
-def _marker_body(cdr: CdrBuilder, event: Event, kind: int) -> None:
-    x, y = event.centre
-    is_text = kind == _TEXT
-    cdr.pack("d", *((x, y, _TEXT_Z_M) if is_text else (0.0, 0.0, 0.0)))
-    cdr.pack("d", 0.0, 0.0, 0.0, 1.0)
-    cdr.pack("d", *((0.0, 0.0, _TEXT_HEIGHT_M) if is_text else (_LINE_WIDTH_M, 0.0, 0.0)))
-    cdr.pack("f", *COLOURS[event.kind], 1.0)
-    cdr.pack("i", 0)  # lifetime: until it is deleted
-    cdr.pack("I", 0)
-    cdr.pack("B", False)  # frame_locked
-    corners = hull(event.points)
-    _points(cdr, [] if is_text else [*corners.tolist(), corners[0].tolist()])
-    cdr.pack("I", 0)  # colors
-    cdr.string("")  # texture_resource
-    cdr.header(0, "")  # texture
-    cdr.string("")
-    cdr.pack("I", 0)
-    cdr.pack("I", 0)  # uv_coordinates
-    cdr.string(f"{event.id} {event.kind.value}" if is_text else "")
-    cdr.string("")  # mesh_resource
-    cdr.string("")  # mesh_file
-    cdr.pack("I", 0)
-    cdr.pack("B", False)  # mesh_use_embedded_materials
+@dataclass(frozen=True, slots=True)
+class _Marker:
+    """What our markers differ in; lengths in metres, map frame."""
+
+    namespace: str = ""  # none: of all
+    id: int = 0
+    type: int = 0
+    action: int = _ADD
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    scale: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    colour: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    points: Sequence[Sequence[float]] = ()
+    text: str = ""
+
+    def write(self, cdr: CdrBuilder) -> None:
+        """`visualization_msgs/Marker` after its header."""
+        cdr.string(self.namespace)
+        cdr.pack("i", self.id, self.type, self.action)
+        cdr.pack("d", *self.position)
+        cdr.pack("d", 0.0, 0.0, 0.0, 1.0)
+        cdr.pack("d", *self.scale)
+        cdr.pack("f", *self.colour, 1.0)
+        cdr.pack("i", 0)  # lifetime: until it is deleted
+        cdr.pack("I", 0)
+        cdr.pack("B", False)  # frame_locked
+        _points(cdr, self.points)
+        cdr.pack("I", 0)  # colors
+        cdr.string("")  # texture_resource
+        cdr.header(0, "")  # texture
+        cdr.string("")
+        cdr.pack("I", 0)
+        cdr.pack("I", 0)  # uv_coordinates
+        cdr.string(self.text)
+        cdr.string("")  # mesh_resource
+        cdr.string("")  # mesh_file
+        cdr.pack("I", 0)
+        cdr.pack("B", False)  # mesh_use_embedded_materials
+
+
+def _markers(events: Sequence[Event]) -> Iterator[_Marker]:
+    for event in events:
+        if not event.holds:
+            continue
+        colour, corners = COLOURS[event.kind], hull(event.points).tolist()
+        x_min, _, x_max, y_max = event.bounds
+        yield _Marker(
+            "timemap/outline",
+            event.id,
+            _LINE_STRIP,
+            position=(0.0, 0.0, _OUTLINE_Z_M),
+            scale=(_LINE_WIDTH_M, 0.0, 0.0),
+            colour=colour,
+            points=[*corners, corners[0]],
+        )
+        yield _Marker(
+            "timemap/text",
+            event.id,
+            _TEXT,
+            position=((x_min + x_max) / 2, y_max + _TEXT_APART_M, _TEXT_Z_M),
+            scale=(0.0, 0.0, _TEXT_HEIGHT_M),
+            colour=colour,
+            text=f"{event.id} {event.kind.value}",
+        )
 
 
 def _points(cdr: CdrBuilder, points: Sequence[Sequence[float]]) -> None:

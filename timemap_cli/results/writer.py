@@ -10,7 +10,7 @@ import numpy as np
 from mcap.writer import CompressionType, IndexType, Writer
 
 from timemap_cli import __version__
-from timemap_cli.changes.events import Transition
+from timemap_cli.changes.events import Event, Transition
 from timemap_cli.errors import TimemapError
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.level_map import merged_points, occupancy_grid
@@ -118,16 +118,19 @@ class ResultWriter:
             grid = pack_grid(occupancy_grid(nodes, estimates, self._radius), now_ns, self._map_frame)
             self._add_of_level(LevelTopic.MAP, level, grid, now_ns)
 
-    def write_changes(self, transitions: Sequence[Transition], stamp_ns: int) -> None:
-        """Write what was found out about change events when the newest scan replayed was `stamp_ns`."""
-        if not transitions:
-            return
+    def write_changes(
+        self, transitions: Sequence[Transition], events: Sequence[Event], stamp_ns: int
+    ) -> None:
+        """Write what was found out about change events when the newest scan replayed was `stamp_ns`.
+
+        `events` are all events as they are then: the markers show those that hold.
+        """
         now_ns = self._advance(stamp_ns)
         for transition in transitions:
             message = pack_change(transition, now_ns, self._map_frame)
             self._add(channels.CHANGE_TOPIC, definitions.CHANGE, message, now_ns, latched=False)
-        markers = pack_markers(transitions, now_ns, self._map_frame)
-        self._add(channels.MARKER_TOPIC, definitions.MARKERS, markers, now_ns, latched=False)
+        markers = pack_markers(events, now_ns, self._map_frame)
+        self._add(channels.MARKER_TOPIC, definitions.MARKERS, markers, now_ns, latched=True)
 
     def finish(
         self,
