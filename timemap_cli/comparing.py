@@ -25,6 +25,9 @@ class Comparison:
     nodes: Sequence[Node]
     before: ComparedSide
     after: ComparedSide
+    without_partner: tuple[int, int] | None = (
+        None  # of two results: nodes of the one, the other, that it alone has
+    )
     warnings: tuple[str, ...] = ()
     hint: str | None = None  # what to try, where nothing was compared or nothing found
 
@@ -45,7 +48,7 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
         hint = (
             None if difference.changes else f"{_two_times(reader, result, faster)}\ntimemap changes {result}"
         )
-        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings, hint)
+        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings=warnings, hint=hint)
 
 
 def compare_times(result: Path, level: str, times: tuple[str, str]) -> Comparison:
@@ -58,7 +61,7 @@ def compare_times(result: Path, level: str, times: tuple[str, str]) -> Compariso
         old_side, new_side = (ComparedSide(str(result), level, ns) for ns in (earlier_ns, later_ns))
         warnings = _beyond(reader, result, later_ns)
         hint = None if difference.nodes else _two_times(reader, result, level)
-        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings, hint)
+        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings=warnings, hint=hint)
 
 
 def compare_results(one: Path, other: Path, level: str) -> Comparison:
@@ -70,7 +73,8 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
         (old_path, old), (new_path, new) = sorted(pairs, key=lambda pair: pair[1].end_ns)
         _require_same_map(old_path, old, new_path, new)
         before = old.estimates(level, None)
-        after = _renumbered(new.estimates(level, None), _shared_nodes(old, new))
+        shared = _shared_nodes(old, new)
+        after = _renumbered(new.estimates(level, None), shared)
         if not after:
             raise UsageError(
                 f"{old_path} and {new_path} share no nodes",
@@ -81,7 +85,8 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
             ComparedSide(str(path), level, reader.end_ns)
             for path, reader in ((old_path, old), (new_path, new))
         )
-        return Comparison(difference, tuple(old.nodes), old_side, new_side)
+        alone = len(old.nodes) - len(set(shared.values())), len(new.nodes) - len(shared)
+        return Comparison(difference, tuple(old.nodes), old_side, new_side, alone)
 
 
 def newest_result(folder: Path) -> Path:

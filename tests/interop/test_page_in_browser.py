@@ -5,7 +5,8 @@ import shutil
 
 import pytest
 
-from tests.reports.pages import APPEARED, GONE_AGAIN, HOSTILE, write_page_result
+from tests.cli.result_files import all_levels, write
+from tests.reports.pages import APPEARED, GONE_AGAIN, HOSTILE, REPORT, write_page_result
 from timemap_cli.reports.page import page
 from timemap_cli.reports.page_data import page_data
 from timemap_cli.results.reader import ResultReader
@@ -56,6 +57,10 @@ def address(tmp_path_factory):
 @pytest.fixture
 def opened(driver, address):
     """The browser with the page loaded and drawn."""
+    return open_page(driver, address)
+
+
+def open_page(driver, address):
     driver.get_log("browser")
     driver.get_log("performance")
     driver.get(address)
@@ -189,3 +194,12 @@ def test_no_request_leaves_the_page(opened, address):
     outside = [url for url in asked if url != address and not url.startswith(("data:", "blob:"))]
     assert address in asked
     assert outside == []
+
+
+def test_a_page_without_changes_says_so(driver, tmp_path):
+    with ResultReader(write(tmp_path / "r.mcap", [(0, all_levels(False))], report=REPORT)) as reader:
+        (tmp_path / "r.html").write_text(page("r", page_data(reader)))
+    opened = open_page(driver, (tmp_path / "r.html").as_uri())
+    assert element(opened, "#events tbody").text == "No change was found."
+    assert not element(opened, "#line-box").is_displayed()
+    assert [line for line in opened.get_log("browser") if line["level"] == "SEVERE"] == []

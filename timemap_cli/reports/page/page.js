@@ -211,11 +211,21 @@ function fillEvents() {
         swatch.className = "swatch"; swatch.style.background = KIND_COLOURS[event.kind];
         cell.append(swatch);
       }
-      cell.append(String(text));
-      if (column > 2) cell.className = "words";
+      if (column >= 3 && column <= 5) cell.append(...words(text));
+      else cell.append(String(text));
     });
     row.addEventListener("click", () => choose(event.id));
   }
+}
+
+// Words that a line may be broken between, and nowhere within: a date stays whole.
+function words(text) {
+  return text.split(" ").flatMap((word) => {
+    const whole = document.createElement("span");
+    whole.className = "whole";
+    whole.append(word);
+    return [whole, " "];
+  });
 }
 
 function choose(id) {
@@ -298,7 +308,8 @@ async function start() {
   slider.addEventListener("input", () => { state.step = Number(slider.value); draw(); });
   if (DATA.nodes.length) state.node = 0;
   draw();
-  clicked("plan"); clicked("line");
+  clicked("plan");
+  if (EVENTS.length) clicked("line");
   document.body.dataset.ready = "yes";
 }
 
