@@ -36,7 +36,7 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
     """The slower of two levels against the faster one, at a time, by default the result's end."""
     with ResultReader(result) as reader:
         for level in levels:
-            _require_level(reader, result, level)
+            require_level(reader, result, level)
         if levels[0] == levels[1]:
             raise UsageError(f"level {levels[0]} cannot differ from itself", hint=_level_pair(result, reader))
         slower, faster = sorted(levels, key=reader.levels.index, reverse=True)
@@ -54,7 +54,7 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
 def compare_times(result: Path, level: str, times: tuple[str, str]) -> Comparison:
     """The earlier of two times of a level against the later one: each node's newest estimates until then."""
     with ResultReader(result) as reader:
-        _require_level(reader, result, level)
+        require_level(reader, result, level)
         earlier_ns, later_ns = sorted(_time_within(reader, result, time) for time in times)
         before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
         difference = compare(reader.nodes, before, after, radius=reader.radius, only_renewed=True)
@@ -69,7 +69,7 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
     with ResultReader(one) as first, ResultReader(other) as second:
         pairs = [(one, first), (other, second)]
         for path, reader in pairs:
-            _require_level(reader, path, level)
+            require_level(reader, path, level)
         (old_path, old), (new_path, new) = sorted(pairs, key=lambda pair: pair[1].end_ns)
         _require_same_map(old_path, old, new_path, new)
         before = old.estimates(level, None)
@@ -97,7 +97,8 @@ def newest_result(folder: Path) -> Path:
     return found[-1]
 
 
-def _require_level(reader: ResultReader, result: Path, level: str) -> None:
+def require_level(reader: ResultReader, result: Path, level: str) -> None:
+    """UsageError for a level that a result does not have."""
     if level not in reader.levels:
         raise UsageError(
             f"{result} has no level '{level}', only {', '.join(reader.levels)}",

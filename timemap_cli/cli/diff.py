@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from timemap_cli.cli.level_words import spread_levels
+from timemap_cli.cli.level_words import LevelPairs
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
@@ -20,13 +20,6 @@ _TWO_TIMES = "timemap diff --level mid --between 2024-05-01T18:00:00Z end"
 _TWO_RESULTS = "timemap diff RESULT OTHER --level long"
 
 
-class _LevelPairs(click.Command):
-    """A command whose --level takes a second word if that is a level's name."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        return super().parse_args(ctx, spread_levels(args))
-
-
 def _two_times(
     _context: click.Context, _option: click.Parameter, times: tuple[str, str] | None
 ) -> tuple[str, str] | None:
@@ -36,7 +29,7 @@ def _two_times(
     return times
 
 
-@click.command(cls=_LevelPairs, short_help="what differs between two levels, two times or two results")
+@click.command(cls=LevelPairs, short_help="what differs between two levels, two times or two results")
 @click.argument("results", nargs=-1, type=NAMED_PATH, metavar="[RESULT] [OTHER]")
 @click.option(
     "--level", "levels", multiple=True, metavar="LEVEL [LEVEL]", help="Two levels, or the one to look at."
