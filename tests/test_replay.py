@@ -87,11 +87,12 @@ def test_a_half_life_that_the_window_cannot_keep_is_told(tmp_path):
 
 
 def test_too_many_dropped_scans_are_told_with_their_reasons(tmp_path):
-    logs = [standing_log(tmp_path / f"{name}.mcap") for name in "ab"]
+    blind = standing_log(tmp_path / "b.mcap", start_ns=START_NS + 10**10, hole=True)
+    logs = [standing_log(tmp_path / "a.mcap"), blind]
     summary = replayed(tmp_path, *logs)
     assert summary.data_lost
     assert summary.warnings == (
-        "50 % of the scans were dropped (duplicate 100), more than input.max_dropped allows (5 %)",
+        "50 % of the scans were dropped (node_not_seen 100), more than input.max_dropped allows (5 %)",
     )
     allowed = load(None, {"input": {"max_dropped": 0.5}})
     summary = replayed(tmp_path, *logs, settings=allowed, force=True)
@@ -169,8 +170,29 @@ def test_nodes_of_another_frame_are_refused(tmp_path):
         replayed(tmp_path, log, nodes=nodes)
 
 
-def test_overlapping_ends_write_the_maps_once(tmp_path):
-    logs = [standing_log(tmp_path / f"{name}.mcap", start_ns=START_NS + i) for i, name in enumerate("ab")]
+def test_recordings_that_end_together_write_the_maps_once(tmp_path):
+    logs = [standing_log(tmp_path / f"{name}.mcap") for name in "ab"]
     summary = replayed(tmp_path, *logs)
+    assert summary.dropped == {"duplicate": 100}
+    assert not summary.data_lost
     with ResultReader(summary.result) as reader:
         assert len(list(reader._file.messages(["/timemap/mid/map"], None))) == 1
+
+
+def test_the_parts_of_a_drive_write_the_maps_once_each(tmp_path):
+    logs = [standing_log(tmp_path / f"{i}.mcap", start_ns=START_NS + i * 10**10) for i in range(3)]
+    summary = replayed(tmp_path, *logs)
+    with ResultReader(summary.result) as reader:
+        assert len(list(reader._file.messages(["/timemap/mid/map"], None))) == 3
+
+
+def test_a_scan_recorded_twice_is_not_lost(tmp_path):
+    logs = [standing_log(tmp_path / f"{name}.mcap") for name in "ab"]
+    summary = replayed(tmp_path, *logs)
+    assert (summary.scans_used, summary.dropped, summary.data_lost) == (100, {"duplicate": 100}, False)
+
+
+def test_scans_of_before_1970_are_counted(tmp_path):
+    log = standing_log(tmp_path / "a.mcap", start_ns=-2_000_000_000, log_later_ns=START_NS)
+    summary = replayed(tmp_path, log)
+    assert (summary.scans_used, summary.dropped) == (80, {"malformed": 20})

@@ -28,7 +28,8 @@ from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
 from timemap_cli.second_process import mapped
 from timemap_cli.times import format_time, parse_time
 
-_NOT_LOST = ("outside_time",)  # reasons for dropping a scan that the user asked for
+# Reasons for dropping a scan by which nothing is lost: the user asked for it, or the scan is there once more.
+_NOT_LOST = ("outside_time", "duplicate")
 
 
 class Progress(Protocol):
@@ -127,7 +128,13 @@ class _Observing:
         """Blocks of observations in stamp order; None where a recording has ended."""
         plan, counts = self._plan, self.counts
         blocks = sweeps(
-            self._recordings, plan.selection, plan.beams, counts, start_ns=start_ns, end_ns=end_ns
+            self._recordings,
+            plan.selection,
+            plan.beams,
+            counts,
+            start_ns=start_ns,
+            end_ns=end_ns,
+            drives=plan.drives,
         )
         for block in blocks:
             if isinstance(block, EndOfRecording):
@@ -275,7 +282,10 @@ def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
         yield "the stamps of a recording begin before those of the one before it end: do not ask for times in between"
     for level, shortfall in writing.shortfalls.items():
         if shortfall > 0.1:
-            yield f"level {level} forgets more slowly than its half-life says: its window is too long for it"
+            yield (
+                f"level {level} forgets more slowly than its half-life says: its window is too long for it, "
+                f"only {1 - shortfall:.0%} of the scans due came"
+            )
     if lost := observing.counts.dropped.get("lost"):
         yield (
             f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "

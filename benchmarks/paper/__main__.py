@@ -33,7 +33,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = _options(arguments)
     scale = Scale.quick if options.quick else Scale.full
     names = [name for name in experiments.NAMES if not options.only or name in options.only]
-    sections: dict[str, str] = {}
     for done in _finished(names, scale, bool(options.png)):
         print(f"{done.printed}\n[{done.name}: {done.seconds:.0f} s]\n", flush=True)
         if options.png:
@@ -42,9 +41,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             folder = options.png if file.endswith(".png") else _DOCS / PICTURES
             if scale is Scale.full or folder == options.png:
                 folder.joinpath(file).write_bytes(content)
-        sections[done.name] = done.markdown
-    if scale is Scale.full:
-        _write(sections)
+        if scale is Scale.full:
+            _write({done.name: done.markdown})
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:

@@ -125,6 +125,9 @@ def run(scale: Scale) -> Section:
             "scans for which a changed run is half-and-half, and flicker: share of the steps from estimate to "
             "estimate in which an angle bin outside the change jumps by more than "
             f"0.1 m. Three half-lives, {nodes} runs, an estimate every 10 scans.",
+            "Where the old world itself shows two states, as glass does, the new one wins as soon as it outweighs the "
+            "larger of them: earlier than at the half-life. Poses that tremble by 5 cm spread the ranges at edges and "
+            "slanted walls over several states, which take turns: there the median is steadier and nearer.",
         ),
         tuple(_table(level, one) for level, one in found.items()),
         (),

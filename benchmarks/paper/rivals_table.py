@@ -59,7 +59,8 @@ _SENTENCES = (
     "forbids "
     "nothing, and the path changes over from the new state to the old one on it. (3) Where poses tremble we "
     "flicker more "
-    "than the median (see *Scenes made to fail*). (4) A last scan shows a new thing at once.",
+    "than the median (see *Scenes made to fail*). (4) A last scan and clamped log-odds show a new thing at once, the "
+    "hidden part with it; and everybody who walks by, at every time scale.",
 )
 
 

@@ -54,7 +54,8 @@ class Scans:
 
     def virtual(self) -> Ranges:
         """What the node learns of them (n, ANGLE_BINS) [mm]; every scan must be able to judge the node."""
-        ranges, judged = virtual_scans(self.sweeps(), np.zeros((len(self.ranges), 2)), ANGLE_BINS, RADIUS)
+        centres, ways_free = np.zeros((len(self.ranges), 2)), np.ones(len(self.ranges), np.bool_)
+        ranges, judged = virtual_scans(self.sweeps(), centres, ways_free, ANGLE_BINS, RADIUS)
         if not judged.all():
             raise ValueError(f"{int((~judged).sum())} of {len(judged)} simulated scans do not see their node")
         return ranges

@@ -177,6 +177,14 @@ def test_messages_cut_short_are_counted_and_the_others_read(encoding, cut):
     assert rows([one for one in found if not isinstance(one, BadBatch)]) == expected_rows(messages)
 
 
+@pytest.mark.parametrize("surplus", [1, 3, 4, 7, 8, 100])
+def test_bytes_behind_a_cdr_message_do_not_matter(surplus):
+    contents = [recorded.scan(ROS2, index, [1, 2, index]) for index in range(4)]
+    raws = [serialised(ROS2, content) + b"\x7f" * surplus for content in contents]
+    found = decode_raws(connection(ROS2, "sensor_msgs/msg/LaserScan"), raws)
+    assert rows(found) == expected(contents)
+
+
 @given(st.binary(max_size=200))
 def test_any_bytes_are_decoded_or_counted(raw):
     for store in (ROS1, ROS2):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import pytest
 import zstandard
+from mcap.reader import make_reader
 
 from tests.logs import recorded
 from tests.logs.recorded import ROS1, ROS2, START_NS, TOPICS, CompressionType, IndexType, StoragePlugin
@@ -333,6 +335,78 @@ def test_damaged_chunk_is_left_out_and_told(tmp_path, name):
     assert 0 < len(found[scans]) < 20
     assert set(found[scans]) < set(whole[scans])
     assert "is damaged and left out" in problems_after_reading(path)
+
+
+def chunks(path: Path):
+    with path.open("rb") as file:
+        return make_reader(file).get_summary().chunk_indexes
+
+
+def test_a_chunk_whose_head_is_gone_is_told(tmp_path):
+    path = FORMATS["mcap"][0](tmp_path)
+    content, second = bytearray(path.read_bytes()), chunks(path)[1]
+    content[second.chunk_start_offset : second.chunk_start_offset + 60] = bytes(60)
+    path.write_bytes(content)
+    found, whole = read(path), recorded.drive_rows(ROS2)
+    scans = ("scan", "/scan", "laser")
+    missing = 20 - len(found[scans])
+    assert set(found[scans]) < set(whole[scans])
+    told = problems_after_reading(path)
+    assert f"the chunk at byte {second.chunk_start_offset} is damaged and left out: there is no chunk" in told
+    assert f"{missing} of 20 messages of /scan are missing" in told
+
+
+def test_messages_that_a_bag_announces_and_does_not_hold_are_told(tmp_path):
+    path = FORMATS["bag"][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    # A bag ends with how many messages its last chunk holds of each topic.
+    assert content[-8:] == struct.pack("<II", 5, 1)
+    content[-4:] = struct.pack("<I", 4)
+    path.write_bytes(content)
+    assert read(path) == recorded.drive_rows(ROS2)
+    assert problems_after_reading(path) == "3 of 23 messages of /odom are missing"
+
+
+def test_an_mcap_with_a_summary_is_not_read_whole_to_open_it(tmp_path, monkeypatch):
+    monkeypatch.setattr("timemap_cli.logs.mcap_file.scan", None)
+    assert read(FORMATS["mcap"][0](tmp_path)) == recorded.drive_rows(ROS2)
+
+
+@pytest.mark.parametrize("with_checksum", [True, False])
+@pytest.mark.parametrize("length", [1 << 40, (1 << 63) + 5, 1 << 31])
+def test_a_chunk_length_that_cannot_be_is_not_believed(tmp_path, with_checksum, length):
+    path = FORMATS["mcap"][0](tmp_path)
+    content, second = bytearray(path.read_bytes()), chunks(path)[1]
+    described = struct.pack("<QQ", second.chunk_start_offset, second.chunk_length)
+    struct.pack_into("<Q", content, content.index(described) + 8, length)
+    if not with_checksum:
+        content[-12:-8] = bytes(4)
+    path.write_bytes(content)
+    assert read(path) == recorded.drive_rows(ROS2)
+    assert problems_after_reading(path) == ""
+
+
+def test_an_uncompressed_length_that_cannot_be_is_not_believed(tmp_path):
+    path = FORMATS["mcap"][0](tmp_path)
+    content, second = bytearray(path.read_bytes()), chunks(path)[1]
+    struct.pack_into("<Q", content, second.chunk_start_offset + 9 + 16, 1 << 50)
+    path.write_bytes(content)
+    assert len(read(path)["scan", "/scan", "laser"]) < 20
+    assert "is damaged and left out: its length is wrong" in problems_after_reading(path)
+
+
+def test_mcap_without_counts_of_its_channels(tmp_path, monkeypatch):
+    finish = recorded.McapWriter.finish
+
+    def finish_without_counts(self):
+        self._Writer__statistics.channel_message_counts.clear()
+        finish(self)
+
+    monkeypatch.setattr(recorded.McapWriter, "finish", finish_without_counts)
+    path = FORMATS["mcap"][0](tmp_path)
+    assert read(path) == recorded.drive_rows(ROS2)
+    with Recording(path) as recording:
+        assert {topic.name: topic.count for topic in recording.topics}["/scan"] == 20
 
 
 def test_journal_beside_a_database_is_told(tmp_path):

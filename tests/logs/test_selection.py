@@ -45,6 +45,19 @@ def test_transforms_from_map_to_laser_are_used():
     assert chosen(seen(NAVIGATION)) == Selection(("/scan",), "map", "tf")
 
 
+def test_scans_in_a_frame_that_nothing_leads_to_do_not_stop_the_others():
+    found = seen(NAVIGATION, scans={"/scan": ("nowhere", "laser")})
+    assert chosen(found) == Selection(("/scan",), "map", "tf")
+    odometry = pose("/odom", frame="map", msgtype=ODOMETRY, child="base_link")
+    assert chosen(seen([MOUNT], [odometry], scans={"/scan": ("nowhere", "laser")})).pose == "/odom"
+
+
+def test_every_topic_that_is_named_needs_a_frame_that_is_connected():
+    found = seen(NAVIGATION, scans={"/scan": ("laser",), "/rear": ("nowhere",)})
+    message, _ = refused(found, scan_topics=["/scan", "/rear"])
+    assert message.startswith("no pose for /rear: frame 'nowhere' is not connected to 'map'")
+
+
 def test_transforms_win_over_a_pose_topic():
     assert chosen(seen(NAVIGATION, [pose("/amcl_pose")])).pose == "tf"
 

@@ -113,6 +113,28 @@ def test_reading_stops_when_the_end_is_past_the_window():
     assert counts.read == 12
 
 
+@pytest.mark.parametrize("size", [1, 7, 100])
+def test_what_counts_as_read_up_to_the_end_does_not_depend_on_the_reading(size):
+    stamps = np.arange(100.0)
+    stamps[50] = 3  # late, and after the end of reading
+    lists = [
+        [
+            driving(at, min(at + size, 100) - 0.5),
+            scans(stamps[at : at + size], log=np.arange(at, min(at + size, 100))),
+        ]
+        for at in range(0, 100, size)
+    ]
+    out, counts = replayed(FakeRecording([[MOUNT], *lists]), end_ns=int(ns(20)[0]))
+    assert seconds(out) == list(range(20))
+    assert (counts.read, counts.dropped) == (31, {"outside_time": 11})  # the scan at 30 s ends it
+
+
+def test_stamps_before_1970_are_malformed():
+    out, counts = replayed(FakeRecording([[MOUNT, driving(-5, 3), scans([-2, 1, -1, 2], log=[1, 2, 3, 4])]]))
+    assert seconds(out) == [1, 2]
+    assert counts.dropped == {"malformed": 2}
+
+
 def test_equal_stamps_of_one_topic_are_the_same_scan():
     out, counts = replayed(FakeRecording([[MOUNT, driving(0, 3), scans([1, 1, 2], first=[7, 8, 9])]]))
     assert blocks(out)[0].ranges[:, 0].tolist() == [7, 9]
@@ -136,6 +158,28 @@ def test_a_recording_that_follows_at_once_continues_the_drive():
     assert seconds(out) == [1, 4.5, 5.5, 6]
     assert [type(item).__name__ for item in out] == ["Sweeps", "EndOfRecording", "Sweeps", "EndOfRecording"]
     assert counts.dropped == {}
+
+
+def ends(out):
+    return [item.recording for item in out if isinstance(item, EndOfRecording)]
+
+
+def test_every_recording_of_a_drive_ends_once():
+    parts = [
+        FakeRecording([[MOUNT, driving(at, at + 39.5), scans(np.arange(at, at + 39))]]) for at in (0, 40, 80)
+    ]
+    out, _ = replayed(*parts)
+    assert ends(out) == [0, 1, 2]
+    assert [seconds(out[: out.index(EndOfRecording(number))])[-1] for number in range(3)] == [38, 78, 118]
+
+
+def test_recordings_that_are_not_read_to_their_end_end_once():
+    parts = [
+        FakeRecording([[MOUNT, driving(at, at + 39.5), scans(np.arange(at, at + 39))]]) for at in (0, 40, 80)
+    ]
+    out, _ = replayed(*parts, end_ns=int(ns(50)[0]))
+    assert ends(out) == [0, 1, 2]
+    assert seconds(out)[-1] == 49
 
 
 def test_recordings_apart_have_their_own_moving_transforms_and_mounts():

@@ -29,6 +29,13 @@ def wall_log(
     every=3,
     pose_topic=None,
 ):
+    """Of ``wall_messages``."""
+    return write_mcap(path, wall_messages(n_scans, holes, start_ns, world, topic, every, pose_topic))
+
+
+def wall_messages(
+    n_scans=60, holes=None, start_ns=START_NS, world="map", topic="/scan", every=3, pose_topic=None, x_m=0.0
+):
     """A robot that looks along x at a wall 2 m away and drives along it; every third scan has holes."""
     mount = transforms(ROS2, (start_ns, "base_link", "laser", (0, 0, 0.2, *STILL)))
     messages = [Message("/tf_static", start_ns, mount)]
@@ -37,14 +44,14 @@ def wall_log(
         ranges = 2 / np.cos(BEARINGS)
         if holes is not None and i % every == 0:
             ranges[holes] = np.inf
-        place = (0, 0.02 * i, 0, *STILL)
+        place = (x_m, 0.02 * i, 0, *STILL)
         if pose_topic:
             messages.append(Message(pose_topic, now, pose_stamped(ROS2, now, place, world)))
         else:
             messages.append(Message("/tf", now, transforms(ROS2, (now, world, "base_link", place))))
         shape = {"angle_min": float(BEARINGS[0]), "angle_increment": float(np.radians(1.0))}
         messages.append(Message(topic, now + 1_000_000, scan(ROS2, now, ranges, **shape)))
-    return write_mcap(path, messages)
+    return messages
 
 
 def surveyed(*paths, **wanted):
@@ -128,6 +135,84 @@ def test_a_recording_without_scans_is_an_error(tmp_path):
     log = write_mcap(tmp_path / "a.mcap", [Message("/p", 1, pose_stamped(ROS2, 1, (0, 0, 0, *STILL)))])
     with pytest.raises(UsageError, match="no laser scans in"):
         surveyed(log)
+
+
+def slow_log(path, every_s, duration=600, topic=None):
+    """A robot whose odometry comes at 5 Hz and whose place in the map, or on a topic, comes seldom."""
+    mount = transforms(ROS2, (START_NS, "base_link", "laser", (0, 0, 0.2, *STILL)))
+    messages = [Message("/tf_static", START_NS, mount)]
+    for i in range(5 * duration):
+        now = START_NS + i * 200_000_000
+        odometry = (now, "odom", "base_link", (0.01 * i, 0, 0, *STILL))
+        messages.append(Message("/tf", now, transforms(ROS2, odometry)))
+        messages.append(Message("/scan", now + 1, scan(ROS2, now, [2, 2, 2, 2, 2])))
+        if i % round(5 * every_s) == 0:
+            place = (0.01 * i, 0, 0, *STILL) if topic else (0, 0, 0, *STILL)
+            stamp_ns = now - 100_000_000  # never that of a scan
+            content = (
+                pose_stamped(ROS2, stamp_ns, place)
+                if topic
+                else transforms(ROS2, (stamp_ns, "map", "odom", place))
+            )
+            messages.append(Message(topic or "/tf", now + 2, content))
+    return write_mcap(path, messages)
+
+
+@pytest.mark.parametrize("every_s", [6.5, 10])
+def test_poses_may_come_as_seldom_as_they_are_looked_up(tmp_path, every_s):
+    found = surveyed(slow_log(tmp_path / "a.mcap", every_s))
+    assert (found.selection, found.problems) == (Selection(("/scan",), "map", "tf"), ())
+    found = surveyed(slow_log(tmp_path / "b.mcap", every_s, topic="/amcl_pose"))
+    assert (found.selection, found.problems) == (Selection(("/scan",), "map", "/amcl_pose"), ())
+
+
+def parts_of(path, n_scans=600):
+    """The same drive in two recordings: one has the scans, one the transforms, which begins 30 s later."""
+    whole = wall_messages(n_scans)
+    scans = [one for one in whole if one.topic == "/scan"]
+    rest = [one for one in whole if one.topic != "/scan" and one.log_ns >= START_NS + 30_000_000_000]
+    return [
+        write_mcap(path / "scans.mcap", scans),
+        write_mcap(path / "tf.mcap", [*(one for one in whole if one.topic == "/tf_static"), *rest]),
+    ]
+
+
+def test_scans_and_transforms_may_be_in_two_recordings(tmp_path):
+    logs = parts_of(tmp_path)
+    found = surveyed(*logs)
+    assert found.selection == Selection(("/scan",), "map", "tf")
+    assert found.drives == ((0, 1),)
+    assert found.problems == (f"{logs[1]} has no scans of /scan",)
+
+
+def test_inspection_takes_the_transforms_of_the_whole_drive(tmp_path):
+    found = inspect(parts_of(tmp_path), load(None))
+    assert found.selection == Selection(("/scan",), "map", "tf")
+    assert found.logs[1].scans[0].with_pose == 300
+    assert [pose.topic for pose in found.logs[1].poses] == []
+
+
+def test_runs_of_one_simulated_time_are_drives_of_their_own(tmp_path):
+    logs = [
+        write_mcap(tmp_path / "a.mcap", wall_messages(300)),
+        write_mcap(tmp_path / "b.mcap", wall_messages(300, start_ns=START_NS + 50_000_000, x_m=4.0)),
+    ]
+    found = surveyed(*logs)
+    assert found.drives == ((0,), (1,))
+    assert found.problems == (
+        f"{logs[0]} and {logs[1]} hold other poses for the same times, as of two robots or two simulations: "
+        "they are read one after the other",
+    )
+
+
+def test_recordings_of_one_robot_by_two_recorders_are_one_drive(tmp_path):
+    whole = wall_messages(300)
+    logs = [
+        write_mcap(tmp_path / f"{name}.mcap", [whole[0], *whole[1 + at :: 3]])
+        for at, name in enumerate("abc")
+    ]
+    found = surveyed(*logs)
+    assert (found.drives, found.problems) == (((0, 1, 2),), ())
 
 
 def test_two_surveys_are_equal(tmp_path):

@@ -308,3 +308,10 @@ def multiplied(p, q):
 
 def turned(q, v):
     return multiplied(multiplied(q, np.append(v, 0.0)), q * (-1, -1, -1, 1))[:3]
+
+
+def test_a_place_that_is_not_on_earth_is_rejected():
+    utm_with_zone = [32_500_000.0, 5_800_000.0, 100.0]
+    held = buffer(tf("map", "base", [1, 2, 3], [utm_with_zone, [1e9, 0, 0], utm_with_zone]))
+    assert held.rejected == 1
+    np.testing.assert_allclose(position(held, "map", "base", [2]), [utm_with_zone])

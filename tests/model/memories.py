@@ -44,7 +44,7 @@ def told(slow):
         for a in range(angle_bins):
             for i, (value, then) in enumerate(one.samples[a]):
                 samples[n, a, i] = code.get(value, value)
-                ages[n, a, i] = one.missed[a] - then
+                ages[n, a, i] = one.spared[a] - then
             for i, (here, there) in enumerate(one.pairs[a]):
                 left[n, a, i], right[n, a, i] = code.get(here, here), code.get(there, there)
     return Remembered(

@@ -17,9 +17,9 @@ class SlowMemory:
 
     def __init__(self, angle_bins, window, choose):
         self.angle_bins, self.window, self.choose = angle_bins, window, choose
-        self.samples = [[] for _ in range(angle_bins)]  # [range, missed then]
+        self.samples = [[] for _ in range(angle_bins)]  # [range, spared then]
         self.pairs = [[] for _ in range(angle_bins)]  # (range here, range in the next angle bin)
-        self.missed = [0] * angle_bins  # scans that a full window took and that did not see the angle bin
+        self.spared = [0] * angle_bins  # scans taken after the window, that evicted nothing of the angle bin
         self.taken = 0
 
     def learn(self, scan):
@@ -27,10 +27,12 @@ class SlowMemory:
         self.taken += 1
         for a, value in enumerate(scan):
             following = scan[(a + 1) % self.angle_bins]
+            evicts = value is not None and len(self.samples[a]) == self.window
+            if self.taken > self.window and not evicts:
+                self.spared[a] += 1
             if value is None:
-                self.missed[a] += self.taken > self.window
                 continue
-            self._put(self.samples[a], [value, self.missed[a]])
+            self._put(self.samples[a], [value, self.spared[a]])
             if following is not None:
                 self._put(self.pairs[a], (value, following))
 
@@ -109,7 +111,7 @@ class SlowEstimate:
         memory, kept = self.memory, 1 - 1 / self.memory.window
         share = [0.0] * len(self.states[a])
         for value, then in memory.samples[a]:
-            fresh = max(OLDEST, kept ** (memory.missed[a] - then))
+            fresh = max(OLDEST, kept ** (memory.spared[a] - then))
             share[self.state_of(a, value)] += fresh / max(1, min(memory.taken, memory.window))
         return share
 
@@ -167,7 +169,7 @@ class SlowEstimate:
         memory, count = self.memory, [0.0] * len(self.states[a])
         lately = set()  # states
         for value, then in memory.samples[a]:
-            state, age = self.state_of(a, value), memory.missed[a] - then
+            state, age = self.state_of(a, value), memory.spared[a] - then
             count[state] += max(OLDEST, (1 - 1 / memory.window) ** age)
             if age <= memory.window * math.log(2):
                 lately.add(state)

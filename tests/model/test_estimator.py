@@ -148,6 +148,13 @@ def test_between_equal_shares_a_young_level_keeps_what_it_saw_first():
     assert found(6.0 - np.array(far_first[:2]), window=10).ranges[0].tolist() == [2000] * 3
 
 
+def test_samples_that_a_full_level_did_not_renew_lose_their_support():
+    scans = np.array([[2.0, 2.0, NAN]] * 6 + [[2.0, NAN, NAN]] * 6)
+    result = found(scans, window=10)
+    assert result.support[0] == pytest.approx([1, 6 / 10 * 0.9**2, 0], abs=1e-5)
+    assert result.plausibility[0] == pytest.approx([1, 1, 1], abs=1e-5)
+
+
 def test_a_full_window_of_one_surface_has_all_the_support():
     result = found(np.full((40, 12), 2.0), window=10)
     assert result.support[0] == pytest.approx(1.0)

@@ -14,7 +14,8 @@ HELD, NEW, OTHER = np.full(12, 2.0), np.full(12, 4.0), np.full(12, 6.0)  # [m] t
 
 def estimate(ranges, node=0, samples=15):
     same = np.ones(12, np.float32)
-    return Estimate(node, "long", 0, np.float32(ranges), same, same, np.full(12, samples, np.uint16))
+    rest = np.full(12, samples, np.uint16), np.zeros(12, np.uint8), np.zeros(12, np.int64)
+    return Estimate(node, "long", 0, np.float32(ranges), same, same, *rest)
 
 
 def guard(max_contradiction=0.75, *, window=100, samples=15):

@@ -81,6 +81,25 @@ def test_half_the_window_is_new_after_the_half_life_in_scans(window, half_life, 
     assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
 
 
+@pytest.mark.parametrize("seen", [1.0, 0.5, 0.25, 0.1])
+@pytest.mark.parametrize(("window", "half_life"), [(25, 20.0), (50, 34.7)])
+def test_the_half_life_holds_while_an_angle_bin_seen_seldom_still_fills_its_window(window, half_life, seen):
+    level = Level("level", window, half_life)
+    experiment = Experiment(level, seen)
+    experiment.show_for_long(OLD, age_of(level))
+    experiment.show(NEW, round(half_life))
+    assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
+
+
+@pytest.mark.parametrize("seen", [1.0, 0.5, 0.25])
+def test_a_young_memory_follows_the_majority_of_what_each_angle_bin_saw(seen):
+    """57 old and 43 new of a hundred: an angle bin of which fewer scans saw anything has fewer, not newer ones."""
+    experiment = Experiment(Level("long", 100, 200.0), seen)
+    experiment.show(OLD, 57)
+    experiment.show(NEW, 43)
+    assert experiment.share_of_new() == pytest.approx(0.43, abs=0.01)
+
+
 @pytest.mark.parametrize("seen", [1.0, 0.5])
 @pytest.mark.parametrize(
     ("window", "half_life", "step_s"), [(25, 10.0, 0.1), (25, 30.0, 0.5), (50, 20.0, 0.2)]
@@ -90,6 +109,21 @@ def test_half_the_window_is_new_after_the_half_life_in_seconds(window, half_life
     experiment = Experiment(level, seen, step_s)
     experiment.show_for_long(OLD, round(age_of(level, step_s) / seen))
     experiment.show(NEW, round(half_life / step_s))
+    assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
+
+
+@pytest.mark.parametrize(("window", "half_life"), [(25, 64.0), (100, 320.0), (50, 640.0)])
+def test_a_robot_that_passes_by_forgets_by_the_time_it_observed(window, half_life):
+    """15 scans at 0.2 s, then 5 min away: 10 s and 14 times 0.2 s of observed time in each pass."""
+    experiment = Experiment(Level("level", window, half_life, in_seconds=True), 1.0, 0.2)
+
+    def passes(value, count):
+        for _ in range(count):
+            experiment.show(value, 15)
+            experiment.now += 1500
+
+    passes(OLD, round(10 * half_life / 12.8))
+    passes(NEW, round(half_life / 12.8))
     assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
 
 

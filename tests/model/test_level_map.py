@@ -175,3 +175,11 @@ def test_many_nodes_at_once_equal_the_same_nodes_in_parts(monkeypatch):
     monkeypatch.setattr("timemap_cli.model.level_map._NODES_AT_ONCE", 2)
     parts = occupancy_grid(nodes, estimates, RADIUS)
     assert parts.cells.tobytes() == whole.cells.tobytes()
+
+
+@pytest.mark.parametrize("far", [1e6, 1e8, 1e10])
+def test_nodes_at_any_distance_fit_into_a_grid(far):
+    grid = occupancy_grid([Node(-far, -far), Node(far, far)], {0: seen(1.0), 1: seen(1.0, 1)}, RADIUS)
+    assert grid.cells.size <= 1 << 24
+    assert grid.cells.shape[1] * grid.resolution >= 2 * far
+    assert cell(grid, -far + 1, -far) == OCCUPIED

@@ -126,18 +126,22 @@ def test_an_old_sample_goes_with_the_rate_of_its_window():
     assert left == pytest.approx((1 - 1 / window) ** more, abs=0.01)
 
 
-def test_only_a_scan_that_did_not_see_the_angle_bin_ages_its_samples():
-    scans = [[1, NAN]] * 3 + [[1, 1], [1, NAN], [1, INF], [1, NAN], [1, NAN], [1, 2]]
+def test_what_a_full_level_does_not_evict_ages():
+    """By a scan that did not see the angle bin, and by one that took an empty place there."""
+    scans = [[1, 1], [1, NAN], [1, INF], [1, NAN], [1, NAN], [1, 2], [1, NAN], [1, 3], [1, 4], [1, NAN]]
     memory = recalled(learnt(scans, 4))
     assert memory.ages[0, 0, :4].tolist() == [0, 0, 0, 0]  # however often it evicted or filled
-    assert memory.ages[0, 1, :3].tolist() == [3, 2, 0]
-    assert memory.taken.tolist() == [9]
+    ages = dict(zip(memory.samples[0, 1].tolist(), memory.ages[0, 1].tolist(), strict=True))
+    assert {value: ages[value] for value in ages if value in (3000, 4000)} in ({3000: 1, 4000: 1}, {4000: 1})
+    assert ages.get(1000, 5) == ages.get(CLEAR, 5) == 5  # scans 5, 6, 7, 8 and 10; scan 9 evicted
+    assert memory.taken.tolist() == [10]
 
 
-def test_while_the_window_fills_nothing_ages():
-    """A level that looked would have forgotten nothing either: each of its scans counts alike."""
-    memory = recalled(learnt([[1, 1], [1, NAN], [1, NAN], [1, 2], [1, NAN]], 4))
-    assert memory.ages[0, 1, :2].tolist() == [1, 1]  # the fifth scan alone
+def test_nothing_ages_before_a_level_has_taken_a_window_of_scans():
+    """Until then it forgets nothing anywhere, so an angle bin seen seldom must not either."""
+    scans = [[1, 1]] + [[1, NAN]] * 2 + [[1, 2]]
+    assert recalled(learnt(scans, 4)).ages[0, 1, :2].tolist() == [0, 0]
+    assert recalled(learnt([*scans, [1, NAN]], 4)).ages[0, 1, :2].tolist() == [1, 1]
 
 
 def test_an_angle_bin_was_last_seen_in_the_newest_scan_that_shows_anything_there():

@@ -92,3 +92,18 @@ def test_the_gate_reads_place_and_yaw_of_the_laser():
     )
     assert observer(gate=GATE).observe(scans).passes.tolist() == [True, False, True, True]
     assert observer(gate=OPEN_GATE).observe(scans).passes.all()
+
+
+def test_a_narrow_scanner_does_not_judge_a_node_behind_a_wall_beside_it():
+    """The wall of the smaller room is at x = 2.5; the robots look along it."""
+    beside = look_around(ROOM, 2.9, -1.0, math.pi / 2, fan(181, 180))
+    looking = observer(nodes=[Node(2.2, -1.0)], spacing=1.0)
+    found = looking.observe(beside)
+    assert (len(found), found.node_not_seen) == (0, 1)
+
+
+def test_a_narrow_scanner_judges_the_node_that_it_has_left_behind():
+    scans = block(*(look_around(ROOM, x, 0.0, 0.0, fan(181, 180)) for x in (0.0, 0.3, 0.6, 0.9)))
+    found = observer(spacing=1.0).observe(scans)
+    assert found.nodes.tolist() == [0, 0, 0, 0]
+    assert found.node_not_seen == 0

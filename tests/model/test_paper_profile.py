@@ -66,13 +66,13 @@ def test_every_angle_bin_has_its_status():
     near[5:9] = UNSEEN
     far[5:9] = UNSEEN
     near[7] = 2000
-    scans = [near] * 5 + [far] * 15  # angle bin 7 stays unseen for 15 > 20 ln 2 scans
+    scans = [near] * 20 + [far] * 60  # angle bin 7 stays unseen for more than 20 ln 2 scans of a full level
     status = estimate_as_in_paper(remembered(scans), 0.075).status[0]
     unknown, others = [5, 6, 8], np.delete(np.arange(ANGLE_BINS), [5, 6, 7, 8])
     assert (status[unknown] == Status.UNKNOWN).all()
     assert status[7] == Status.CONCLUDED
     assert (status[others] == Status.MEASURED).all()
-    close = [*scans[:5], *[far] * 6]
+    close = [near] * 5 + [far] * 6
     assert (estimate_as_in_paper(remembered(close), 0.075).status[0, others] == Status.CONTESTED).all()
 
 

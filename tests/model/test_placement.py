@@ -1,5 +1,7 @@
 """Which node a scan goes to."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -73,3 +75,9 @@ def test_no_scans_make_no_node():
     placement = Placement(1.0)
     assert assigned(placement) == []
     assert placement.centres.shape == (0, 2)
+
+
+def test_a_place_that_is_not_finite_has_no_node_and_makes_none():
+    placement = Placement(1.0)
+    assert assigned(placement, (0.0, 0.0), (math.nan, 0.0), (0.0, math.inf), (5.0, 0.0)) == [0, -1, -1, 1]
+    assert placement.nodes == [Node(0.0, 0.0), Node(5.0, 0.0)]

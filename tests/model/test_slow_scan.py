@@ -42,7 +42,7 @@ def a_scan(random, beams, degrees, *, noise=False):
 
 def both(scan, node, angle_bins, radius):
     """The model's ranges and the slow ones, or None where one of them cannot judge the node."""
-    fast, judged = virtual_scans(scan, node, angle_bins, radius)
+    fast, judged = virtual_scans(scan, node, np.ones(1, bool), angle_bins, radius)
     slow = slow_virtual_scan(scan, 0, node[0], angle_bins, radius)
     if slow is None or not judged[0]:
         assert slow is None or np.any(scan.map_from_laser_first != scan.map_from_laser_last)
@@ -103,7 +103,7 @@ def test_what_is_claimed_from_a_node_is_true_there(beams, degrees):
     wrong_hits, wrong_clear, claims = 0, 0, 0
     for _ in range(100):
         scan, node = a_scan(random, beams, degrees)
-        ranges, _ = virtual_scans(scan, node, 360, 4.0)
+        ranges, _ = virtual_scans(scan, node, np.ones(1, bool), 360, 4.0)
         true = seen_from(ROOM, *node[0], 360, rays_per_bin=8)
         hit = ranges[0] < CLEAR
         metres = ranges[0] / 1000

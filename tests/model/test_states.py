@@ -60,6 +60,12 @@ def test_clear_is_a_state_of_its_own():
     assert surfaces(INF, INF) == [[65534, 65534]]
 
 
+@pytest.mark.parametrize("width", [0.1, 0.5, 0.6, 1.0])
+@pytest.mark.parametrize("metres", [50.0, 56.0, 58.0, 60.0])
+def test_clear_stays_apart_from_the_farthest_ranges_whatever_the_width(metres, width):
+    assert surfaces(metres, INF, width=width) == [[metres * 1000], [65534]]
+
+
 def test_beyond_1_6_metres_surfaces_are_wider_in_proportion():
     """Half of 10 cm at 1.6 m is a factor of exp(0.05 / 1.6) = 1.0317 beyond."""
     assert len(surfaces(1.54, 1.592)) == 2

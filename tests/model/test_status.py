@@ -67,13 +67,13 @@ def test_the_best_rival_counts_and_not_all_that_is_against():
 def test_what_was_not_observed_for_half_a_window_of_scans_is_concluded(window, last):
     seen, unseen = [[2.0, 3.0, 3.0]], [[NAN, 3.0, 3.0]]
     others = [Status.MEASURED] * 2
-    assert statuses(seen * 9 + unseen * last, window) == [Status.MEASURED, *others]
-    assert statuses(seen * 9 + unseen * (last + 1), window) == [Status.CONCLUDED, *others]
-    assert statuses(seen * 9 + unseen * (last + 1) + seen, window) == [Status.MEASURED, *others]
+    assert statuses(seen * window + unseen * last, window) == [Status.MEASURED, *others]
+    assert statuses(seen * window + unseen * (last + 1), window) == [Status.CONCLUDED, *others]
+    assert statuses(seen * window + unseen * (last + 1) + seen, window) == [Status.MEASURED, *others]
 
 
 def test_a_tie_of_what_was_not_observed_lately_is_no_contest():
-    scans = [[2.0, 3.0, 3.0]] * 5 + [[5.0, 3.0, 3.0]] * 5 + [[NAN, 3.0, 3.0]] * 30
+    scans = [[2.0, 3.0, 3.0]] * 12 + [[5.0, 3.0, 3.0]] * 12 + [[NAN, 3.0, 3.0]] * 30
     assert statuses(scans, 25) == [Status.CONCLUDED, Status.MEASURED, Status.MEASURED]
 
 

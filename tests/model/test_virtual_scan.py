@@ -18,15 +18,19 @@ from tests.model.scenes import (
     seen_from,
     sweeps,
 )
+from timemap_cli.model.outline import outlines
 from timemap_cli.model.virtual_scan import CLEAR, UNSEEN, virtual_scans
 
 ALL_ROUND = fan(721, 360)
 SQUARE = rectangle(-3, -3, 3, 3)
 
 
-def virtual(scan, x=0.0, y=0.0, *, angle_bins=360, radius=10.0):
+FREE, UNKNOWN = np.array([True]), np.array([False])  # what is known of the way to the node
+
+
+def virtual(scan, x=0.0, y=0.0, *, angle_bins=360, radius=10.0, way=FREE):
     """Ranges [m] of the only scan, inf clear, NaN unseen."""
-    ranges, judged = virtual_scans(scan, np.array([[x, y]]), angle_bins, radius)
+    ranges, judged = virtual_scans(scan, np.array([[x, y]]), way, angle_bins, radius)
     assert judged[0] or (ranges == UNSEEN).all()
     return metres(ranges[0])
 
@@ -35,8 +39,8 @@ def metres(ranges):
     return np.where(ranges == UNSEEN, np.nan, np.where(ranges == CLEAR, np.inf, ranges / 1000))
 
 
-def judges(scan, x=0.0, y=0.0, radius=10.0):
-    return bool(virtual_scans(scan, np.array([[x, y]]), 360, radius)[1][0])
+def judges(scan, x=0.0, y=0.0, radius=10.0, way=FREE):
+    return bool(virtual_scans(scan, np.array([[x, y]]), way, 360, radius)[1][0])
 
 
 def seen_bins(ranges):
@@ -132,6 +136,18 @@ def test_every_beam_of_a_moving_robot_has_its_own_pose(upside_down):
 
 
 # ------------------------------------------------------------------ one value per angle bin
+
+
+@pytest.mark.parametrize("upside_down", [False, True])
+@pytest.mark.parametrize("turn", [-1.0, -0.3, 0.0, 0.02, 0.5, 1.0])
+def test_the_ends_of_a_sweep_that_turns_far_are_where_they_were_measured(turn, upside_down):
+    """10 m away, one centimetre."""
+    bearings = fan(181, 180)
+    first, last = pose(0, 0, 0.3, upside_down=upside_down), pose(0, 0, 0.3 + turn, upside_down=upside_down)
+    found = outlines(sweeps([np.full(181, 10.0)], bearings, [first], [last]), np.zeros((1, 2)), FREE, 360)
+    yaw = 0.3 + turn * np.arange(181) / 180 + (-bearings if upside_down else bearings)
+    assert found.x[0, :181] == pytest.approx(10 * np.cos(yaw), abs=0.01)
+    assert found.y[0, :181] == pytest.approx(10 * np.sin(yaw), abs=0.01)
 
 
 def test_of_several_beams_in_an_angle_bin_the_nearest_point_counts():
@@ -284,6 +300,13 @@ def test_a_near_node_is_judged_from_every_side(degrees, away):
         assert judges(scan, away * math.cos(side), away * math.sin(side))
 
 
+def test_a_node_to_which_no_way_is_known_must_be_seen_or_be_where_the_robot_stands():
+    scan = look_around(SQUARE, 0.0, 0.0, 0.0, fan(181, 180))
+    assert judges(scan, 0.9, 0.3, way=UNKNOWN)
+    assert judges(scan, -0.2, 0.1, way=UNKNOWN)
+    assert not judges(scan, -0.9, 0.3, way=UNKNOWN)
+
+
 def test_a_node_far_behind_a_narrow_scanner_is_not_judged():
     """The disc where the robot stands is small: it does not reach to where it never was."""
     scan = sweeps([np.full(181, 20.0)], fan(181, 180), [pose(0, 0)])
@@ -313,7 +336,7 @@ def test_a_node_that_the_scan_did_not_see_learns_nothing():
     assert not judges(scan, -2.5, 1.75)  # behind it
     assert not judges(scan, 3.0, 2.5)  # in the other room
     assert not judges(scan, -4.5, 0.0)  # outside
-    ranges, _ = virtual_scans(scan, np.array([[3.0, 2.5]]), 360, 10.0)
+    ranges, _ = virtual_scans(scan, np.array([[3.0, 2.5]]), FREE, 360, 10.0)
     assert (ranges == UNSEEN).all()
 
 
@@ -349,6 +372,23 @@ def test_a_handful_of_beams_is_taken(beams, value, angle_bins):
         assert not np.isposinf(seen).any()
     if math.isnan(value):
         assert np.isnan(seen).all()
+
+
+def test_two_beams_a_whole_turn_apart_are_taken():
+    seen = virtual(sweeps([[2.0, 2.0]], [-math.pi, math.pi], [pose(0.2, 0.1)]))
+    assert not np.isposinf(seen).any()
+
+
+def test_a_drivers_largest_number_is_far_away():
+    """Its square overflows; it is clear as a hit at 500 m is."""
+    seen = {}
+    for value in (500.0, float(np.finfo(np.float32).max)):
+        ranges = np.full(361, 4.0)
+        ranges[100:110] = value
+        seen[value] = virtual(sweeps([ranges], fan(361, 360), [pose(0.5, 0.2)]))
+    one, other = seen.values()
+    np.testing.assert_array_equal(one, other)
+    assert np.isposinf(one).sum() >= 4
 
 
 def test_one_beam_is_one_range():
@@ -390,7 +430,7 @@ def test_a_full_circle_without_the_doubled_beam_closes():
 def test_a_node_on_a_wall_harms_nothing():
     for x, y in ((3.0, 0.0), (3.0, 3.0), (2.9999, 0.0), (3.0001, 0.0)):
         ranges, judged = virtual_scans(
-            look_around(SQUARE, 2.0, 0.0, 0.0, ALL_ROUND), np.array([[x, y]]), 360, 10.0
+            look_around(SQUARE, 2.0, 0.0, 0.0, ALL_ROUND), np.array([[x, y]]), FREE, 360, 10.0
         )
         assert ranges.shape == (1, 360)
         assert not (ranges[~judged] != UNSEEN).any()
@@ -405,6 +445,6 @@ def test_a_radius_of_sixty_metres_holds():
 
 def test_no_scans_give_no_virtual_scans():
     scan = look_around(SQUARE, 0, 0, 0, ALL_ROUND).rows(slice(0, 0))
-    ranges, judged = virtual_scans(scan, np.zeros((0, 2)), 360, 10.0)
+    ranges, judged = virtual_scans(scan, np.zeros((0, 2)), FREE[:0], 360, 10.0)
     assert ranges.shape == (0, 360)
     assert judged.shape == (0,)

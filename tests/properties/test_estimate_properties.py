@@ -103,7 +103,7 @@ def test_an_estimate_depends_on_its_own_node_alone(seeds, scans, angle_bins):
 
 def turned(memory, by):
     twin = copy.deepcopy(memory)
-    for name in ("samples", "pairs", "missed"):
+    for name in ("samples", "pairs", "spared"):
         entries = getattr(memory, name)
         setattr(twin, name, entries[-by:] + entries[:-by] if by else list(entries))
     return twin
@@ -111,7 +111,7 @@ def turned(memory, by):
 
 def mirrored(memory):
     twin = copy.deepcopy(memory)
-    twin.samples, twin.missed = memory.samples[::-1], memory.missed[::-1]
+    twin.samples, twin.spared = memory.samples[::-1], memory.spared[::-1]
     swapped = [[(there, here) for here, there in pairs] for pairs in memory.pairs[::-1]]
     twin.pairs = swapped[1:] + swapped[:1]  # the pair of (a, a + 1) now joins (n - 1 - (a + 1), n - 1 - a)
     return twin

@@ -62,9 +62,9 @@ class Track:
         return True
 
     def is_undone_by(self, kind: Kind) -> bool:
-        """Whether a candidate of a kind at this place only says that this change, which all had adopted, is undone."""
+        """Whether a candidate of a kind at this place only says that this change is undone, for levels that had it."""
         opposite = (kind is Kind.VANISHED) != (self.kind is Kind.VANISHED)
-        return opposite and self.adopted[self._levels[-1]] is not None
+        return opposite and (self.adopted[self._levels[-1]] is not None or not self.is_open)
 
     def refine(self, change: Change, *, slower: bool) -> None:
         """Learn from a candidate what the outline is, and whether it has only moved."""

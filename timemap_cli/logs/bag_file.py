@@ -18,7 +18,7 @@ import numpy as np
 
 from timemap_cli.logs import bag_records as records
 from timemap_cli.logs.bag_records import DamagedBagError
-from timemap_cli.logs.chunked import ChunkSpan, in_log_order, stretches, within
+from timemap_cli.logs.chunked import ChunkSpan, in_log_order, stretches, with_shortfall, within
 from timemap_cli.logs.raw import Connection, RawMessages
 
 MAGIC = b"#ROSBAG V2.0\n"
@@ -76,7 +76,9 @@ class BagFile:
             and (end_ns is None or span.start_ns < end_ns)
             and not span.counts.keys().isdisjoint(wanted)
         ]
-        return stretches(spans, partial(self._load, wanted=wanted, start_ns=start_ns, end_ns=end_ns))
+        found = stretches(spans, partial(self._load, wanted=wanted, start_ns=start_ns, end_ns=end_ns))
+        is_whole = start_ns is None and end_ns is None
+        return with_shortfall(found, wanted.values(), self.problems) if is_whole else found
 
     def _load(
         self, span: BagSpan, wanted: dict[int, Connection], start_ns: int | None, end_ns: int | None

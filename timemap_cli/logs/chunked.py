@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
-from timemap_cli.logs.raw import RawMessages
+from timemap_cli.logs.raw import Connection, RawMessages
 
 STRETCH_BYTES = 4 << 20  # chunks are joined up to this size, so that small chunks cost no more than big ones
 LARGEST_STRETCH_BYTES = 16 << 20  # and divided beyond it
@@ -41,7 +42,7 @@ def stretches(
     for index, span in enumerate(ordered):
         waiting += load(span)
         if index + 1 < len(ordered):
-            done, waiting = _split_at(waiting, ordered[index + 1].start_ns)
+            done, waiting = split_at(waiting, ordered[index + 1].start_ns)
         else:
             done, waiting = waiting, []
         ready += done
@@ -53,7 +54,26 @@ def stretches(
         yield from _divided(join(ready))
 
 
-def _split_at(parts: list[RawMessages], time_ns: int) -> tuple[list[RawMessages], list[RawMessages]]:
+def with_shortfall(
+    lists: Iterator[list[RawMessages]], wanted: Iterable[Connection], problems: list[str]
+) -> Iterator[list[RawMessages]]:
+    """The same lists; once all have been taken, an entry in ``problems`` where they hold less than announced."""
+    found: Counter[str] = Counter()
+    for parts in lists:
+        for part in parts:
+            found[part.connection.topic] += len(part)
+        yield parts
+    announced: Counter[str] = Counter()
+    for connection in wanted:
+        announced[connection.topic] += connection.count
+    problems += [
+        f"{count - found[topic]} of {count} messages of {topic} are missing"
+        for topic, count in sorted(announced.items())
+        if found[topic] < count
+    ]
+
+
+def split_at(parts: list[RawMessages], time_ns: int) -> tuple[list[RawMessages], list[RawMessages]]:
     """Messages before ``time_ns``, and the others; empty parts are left out."""
     before, after = [], []
     for part in parts:
@@ -71,7 +91,7 @@ def _divided(parts: list[RawMessages]) -> Iterator[list[RawMessages]]:
     if n_lists > 1:
         times = np.sort(np.concatenate([part.log_ns for part in parts]))
         for index in range(1, n_lists):
-            before, parts = _split_at(parts, int(times[len(times) * index // n_lists]))
+            before, parts = split_at(parts, int(times[len(times) * index // n_lists]))
             if before:
                 yield before
     if parts:

@@ -14,6 +14,8 @@ Int32s = NDArray[np.int32]
 MAX_GAP_NS = 10_000_000_000  # tf2 keeps 10 s by default, so it never sees both ends of a longer gap
 MAX_SAMPLES = 200_000  # bounds memory where stamps lie in the future and so are never behind
 LEAST_NORM = 1e-6
+# Map coordinates reach 1e7 m north (UTM) and 6e7 m east (Gauss-Krueger with its zone): beyond is no place on earth.
+FARTHEST_M = 1e8
 NO_PARENT = -1
 
 
@@ -21,7 +23,7 @@ def usable(translation: Float64s, rotation: Float64s) -> tuple[Bools, Float64s]:
     """Tell which samples (n,) are poses at all; return the quaternions (n, 4), normalised where they are."""
     squares = rotation * rotation
     norm = np.sqrt(squares[:, 0] + squares[:, 1] + squares[:, 2] + squares[:, 3])
-    good = np.isfinite(norm) & (norm > LEAST_NORM) & np.isfinite(translation).all(axis=1)
+    good = np.isfinite(norm) & (norm > LEAST_NORM) & (np.abs(translation) <= FARTHEST_M).all(axis=1)
     return good, rotation / np.where(good, norm, 1.0)[:, None]
 
 

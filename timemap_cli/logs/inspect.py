@@ -1,15 +1,16 @@
 """A full look at some recordings: what is in them, and what a replay would use."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 from timemap_cli.config import Settings
 from timemap_cli.errors import UsageError
-from timemap_cli.logs.batches import BadBatch, Batch, PoseBatch, ScanBatch
+from timemap_cli.logs.batches import BadBatch, Batch, PoseBatch, ScanBatch, TransformBatch
 from timemap_cli.logs.beams import Beams, settle
+from timemap_cli.logs.interleave import NEVER_NS, Recorded, RecordedTopic, interleaved
 from timemap_cli.logs.missing_returns import MissingReturns
 from timemap_cli.logs.poses import TF, PoseSource, transform_topics
 from timemap_cli.logs.recordings import Recording, open_recordings
@@ -104,7 +105,7 @@ def inspect_recordings(recordings: Sequence[Recording], settings: Settings) -> I
         trouble = error
     choices = {topic: _choice(seen, topic, sample, plan, settings) for topic in seen.scan_frames}
     logs = [
-        _LogReader(index, recording, sample, plan, choices).read()
+        _LogReader(index, recording, sample, plan, choices).read(_beside(index, recordings, sample))
         for index, recording in enumerate(recordings)
     ]
     return Inspection(
@@ -139,6 +140,32 @@ def _chains(seen: Seen, plan: Survey | None) -> tuple[tuple[str, ...], ...]:
     return tuple(chain for chain in chains if chain)
 
 
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """What of a recording lies around the time of another one (a ``Recorded``)."""
+
+    recording: Recording
+    start_ns: int
+    end_ns: int
+
+    @property
+    def topics(self) -> Sequence[RecordedTopic]:
+        return self.recording.topics
+
+    def batches(self, topics: Collection[str]) -> Iterator[list[Batch]]:
+        return self.recording.batches(topics, start_ns=self.start_ns, end_ns=self.end_ns + 1)
+
+
+def _beside(index: int, recordings: Sequence[Recording], sample: Sample) -> list[_Part]:
+    """Parts of the other recordings of a recording's drive that its scans may need."""
+    (drive,) = (drive for drive in sample.drives if index in drive)
+    first_ns = recordings[index].start_ns - PATIENCE_NS
+    last_ns = recordings[index].end_ns + PATIENCE_NS
+    others = (recordings[other] for other in drive if other != index)
+    parts = [_Part(one, max(first_ns, one.start_ns), min(last_ns, one.end_ns)) for one in others]
+    return [part for part in parts if part.start_ns <= part.end_ns]
+
+
 class _LogReader:
     """Reads one recording whole, a stretch at a time, and keeps the statistics of its scans."""
 
@@ -152,6 +179,7 @@ class _LogReader:
     ) -> None:
         self._recording = recording
         self._sample = sample
+        self._rejected = 0  # transforms and poses of this recording that cannot be used
         self._bad: Counter[tuple[str, str]] = Counter()
         self._frames: dict[str, PoseBatch] = {}
         self._scans: dict[str, ScanStatistics] = {}
@@ -164,14 +192,16 @@ class _LogReader:
                 beams = _beams(index, name, sample, plan)
                 self._scans[name] = ScanStatistics(name, beams, self._sources.get(choice) if choice else None)
 
-    def read(self) -> LogInfo:
+    def read(self, beside: Sequence[_Part]) -> LogInfo:
         recording = self._recording
-        moving, _ = transform_topics(recording.topics)
-        poses = [topic.name for topic in recording.topics if topic.msgtype in POSE_TYPES]
-        for batches in recording.batches([*self._scans, *moving, *poses]):
-            for batch in batches:
-                self._take(batch)
-            self._look_up(max((_newest_log_ns(batch) for batch in batches), default=0))
+        recorded: list[Recorded] = [recording, *beside]
+        topics = {number: _pose_topics(one) for number, one in enumerate(recorded)}
+        topics[0] = [*self._scans, *topics[0]]
+        for number, batches, until_ns in interleaved(recorded, topics, range(len(recorded))):
+            for batch in batches or ():
+                self._take(batch, is_own=not number)
+            if until_ns < NEVER_NS:
+                self._look_up(until_ns)
         self._look_up(None)
         scans = tuple(statistics.outcome() for statistics in self._scans.values())
         poses_found = tuple(self._pose_infos())
@@ -194,16 +224,25 @@ class _LogReader:
             source.add(batch)
         return source
 
-    def _take(self, batch: Batch) -> None:
+    def _take(self, batch: Batch, *, is_own: bool) -> None:
         if isinstance(batch, ScanBatch):
             self._scans[batch.topic].add(batch)
-        elif isinstance(batch, BadBatch):
+        elif not isinstance(batch, BadBatch):
+            self._take_poses(batch, is_own=is_own)
+        elif is_own:
             self._bad[batch.topic, batch.reason] += batch.count
-        else:
-            if isinstance(batch, PoseBatch):
-                self._frames.setdefault(batch.topic, batch)
-            for source in self._sources.values():
-                source.add(batch)
+
+    def _take_poses(self, batch: TransformBatch | PoseBatch, *, is_own: bool) -> None:
+        if isinstance(batch, PoseBatch) and is_own:
+            self._frames.setdefault(batch.topic, batch)
+        before = self._rejected_so_far()
+        for source in self._sources.values():
+            source.add(batch)
+        if is_own:
+            self._rejected += self._rejected_so_far() - before
+
+    def _rejected_so_far(self) -> int:
+        return max((source.rejected for source in self._sources.values()), default=0)
 
     def _look_up(self, log_ns: int | None) -> None:
         """Find the poses of the scans that have waited long enough; of all without a log time."""
@@ -232,9 +271,10 @@ class _LogReader:
             f"{topic}: {count} {'message' if count == 1 else 'messages'} {reason}"
             for (topic, reason), count in sorted(self._bad.items())
         ]
-        rejected = max((source.rejected for source in self._sources.values()), default=0)
-        if rejected:
-            found.append(f"{rejected} transforms or poses are unusable (rotation of length zero, NaN)")
+        if self._rejected:
+            found.append(
+                f"{self._rejected} transforms or poses are unusable (rotation of length zero, NaN, off the earth)"
+            )
         return found
 
 
@@ -245,5 +285,7 @@ def _beams(index: int, topic: str, sample: Sample, plan: Survey | None) -> Beams
     return settle(scans) if scans else None
 
 
-def _newest_log_ns(batch: Batch) -> int:
-    return 0 if isinstance(batch, BadBatch) else int(batch.log_ns.max(initial=0))
+def _pose_topics(recorded: Recorded) -> list[str]:
+    """Topics of moving transforms, and of poses."""
+    moving, _ = transform_topics(recorded.topics)
+    return [*moving, *(topic.name for topic in recorded.topics if topic.msgtype in POSE_TYPES)]

@@ -15,6 +15,7 @@ from timemap_cli.logs.raw import Bytes, Int64s, windows
 RECORD_HEAD = struct.Struct("<BQ")  # opcode, length of what follows
 MESSAGE_HEAD = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 CHUNK_HEAD = struct.Struct("<QQQI")  # first and last log time, uncompressed size, CRC
+MOST_BYTES = 1 << 31  # of a chunk; writers end one after a few MB
 INDEX_ENTRY = np.dtype([("log_ns", "<u8"), ("offset", "<u8")])
 
 Entries = dict[int, tuple[Int64s, Int64s, Int64s]]  # channel -> log time, start, size of its messages
@@ -26,9 +27,11 @@ class DamagedChunkError(Exception):
 
 def chunk_content(record: bytes) -> bytes:
     """Uncompressed records of a chunk record, its head included; DamagedChunkError where they cannot be had."""
-    _, length = RECORD_HEAD.unpack_from(record)
-    if len(record) < 9 + length:
-        raise DamagedChunkError("it is cut off")
+    opcode, length = RECORD_HEAD.unpack_from(record)
+    if opcode != Opcode.CHUNK:
+        raise DamagedChunkError("there is no chunk")
+    if len(record) != 9 + length:
+        raise DamagedChunkError("it is cut off" if len(record) < 9 + length else "its length is wrong")
     _, _, size, crc = CHUNK_HEAD.unpack_from(record, 9)
     (name_length,) = struct.unpack_from("<I", record, 37)
     compression = record[41 : 41 + name_length].decode("ascii", "replace")
@@ -36,12 +39,15 @@ def chunk_content(record: bytes) -> bytes:
     content = record[49 + name_length : 49 + name_length + stored]
     try:
         if compression == "zstd":
+            # As much memory is taken as the frame, or the chunk, claims to hold.
+            if zstandard.frame_content_size(content) not in (size, -1, 0) or size > MOST_BYTES:
+                raise DamagedChunkError("its length is wrong")
             content = zstandard.ZstdDecompressor().decompress(content, max_output_size=size)
         elif compression == "lz4":
             content = lz4.frame.decompress(content)
         elif compression:
             raise DamagedChunkError(f"its compression {compression!r} is unknown")
-    except (zstandard.ZstdError, RuntimeError, ValueError) as error:
+    except (zstandard.ZstdError, RuntimeError, ValueError, MemoryError) as error:
         raise DamagedChunkError(f"it cannot be decompressed ({error})") from error
     if len(content) != size:
         raise DamagedChunkError(f"it holds {len(content)} bytes instead of {size}")

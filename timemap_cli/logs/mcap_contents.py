@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import zlib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ from mcap.summary import Summary
 from timemap_cli.logs.chunked import ChunkSpan
 from timemap_cli.logs.mcap_chunks import MESSAGE_HEAD, RECORD_HEAD, DamagedChunkError, chunk_content
 
+FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, of its offsets, CRC
 MAGIC = b"\x89MCAP0\r\n"
 LONGEST_RUN = 4 << 20  # messages outside of chunks are taken together up to this many bytes
 
@@ -58,24 +60,45 @@ def read_profile(file: IO[bytes]) -> str:
 
 def from_summary(file: IO[bytes]) -> Contents | None:
     """What the summary at the end of the file tells; None where it does not tell all we need."""
+    size = file.seek(0, 2)
+    if not _is_undamaged(file, size):
+        return None
     file.seek(0)
     try:
-        summary = SeekingReader(file).get_summary()
+        summary = SeekingReader(file, record_size_limit=size).get_summary()
     except (McapError, ValueError, struct.error, OSError):
         return None
     if summary is None or summary.statistics is None or not _is_complete(summary):
         return None
     statistics = summary.statistics
+    spans = [_span(index) for index in summary.chunk_indexes]
+    if any(span.offset + span.length + span.index_length > size for span in spans):
+        return None
     return Contents(
         schemas=summary.schemas,
         channels=summary.channels,
         counts=statistics.channel_message_counts,
-        spans=[_span(index) for index in summary.chunk_indexes],
+        spans=spans,
         start_ns=statistics.message_start_time,
         end_ns=statistics.message_end_time,
         metadata_names=frozenset(index.name for index in summary.metadata_indexes),
         problem=None,
     )
+
+
+def _is_undamaged(file: IO[bytes], size: int) -> bool:
+    """Whether there is a summary, and its checksum, where it has one, is right."""
+    end = size - len(MAGIC) - FOOTER.size
+    if end < len(MAGIC):
+        return False
+    file.seek(end)
+    footer = file.read(FOOTER.size)
+    opcode, _, begin, _, crc = FOOTER.unpack(footer)
+    if opcode != Opcode.FOOTER or not len(MAGIC) <= begin <= end:
+        return False
+    file.seek(begin)
+    summary = file.read(end - begin)
+    return not crc or zlib.crc32(footer[:-4], zlib.crc32(summary)) == crc
 
 
 def _is_complete(summary: Summary) -> bool:
@@ -88,6 +111,7 @@ def _is_complete(summary: Summary) -> bool:
     return (
         statistics is not None
         and indexed in (0, statistics.message_count)
+        and sum(statistics.channel_message_counts.values()) == statistics.message_count
         and len(summary.chunk_indexes) == statistics.chunk_count
         and (statistics.chunk_count > 0 or statistics.message_count == 0)
         and len(summary.channels) >= statistics.channel_count

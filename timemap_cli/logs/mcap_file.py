@@ -15,7 +15,7 @@ from typing import IO
 import numpy as np
 from mcap.records import Channel, Schema
 
-from timemap_cli.logs.chunked import in_log_order, stretches, within
+from timemap_cli.logs.chunked import in_log_order, stretches, with_shortfall, within
 from timemap_cli.logs.mcap_chunks import DamagedChunkError, chunk_content, from_index, walk
 from timemap_cli.logs.mcap_contents import McapSpan, from_summary, read_profile, scan
 from timemap_cli.logs.raw import Connection, RawMessages, ros2_name
@@ -65,7 +65,9 @@ class McapFile:
             and (end_ns is None or span.start_ns < end_ns)
             and (span.channels is None or not span.channels.isdisjoint(wanted))
         ]
-        return stretches(spans, partial(self._load, wanted=wanted, start_ns=start_ns, end_ns=end_ns))
+        found = stretches(spans, partial(self._load, wanted=wanted, start_ns=start_ns, end_ns=end_ns))
+        is_whole = start_ns is None and end_ns is None
+        return with_shortfall(found, wanted.values(), self.problems) if is_whole else found
 
     def _load(
         self, span: McapSpan, wanted: dict[int, Connection], start_ns: int | None, end_ns: int | None

@@ -4,7 +4,10 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from timemap_cli.logs.batches import Batch, PoseBatch, ScanBatch, TransformBatch
+from timemap_cli.logs.batches import PoseBatch, ScanBatch, TransformBatch
+from timemap_cli.logs.drives import Drive, drives
+from timemap_cli.logs.history import MAX_GAP_NS
+from timemap_cli.logs.interleave import joined
 from timemap_cli.logs.poses import transform_topics
 from timemap_cli.logs.recordings import Recording
 from timemap_cli.logs.selection import POSE_TYPES, SCAN_TYPE
@@ -12,8 +15,11 @@ from timemap_cli.logs.selection import POSE_TYPES, SCAN_TYPE
 WINDOWS = 30  # over all recordings
 LEAST_WINDOWS = 4  # of each recording
 SCANS_OF_WINDOW = 20
-# Transforms sent about once a second still stand on both sides of a scan.
+# Scans come in so long a time, however they are bunched.
 LEAST_WINDOW_NS = 3_000_000_000
+
+
+Stretch = tuple[int, int]  # [start, end) of log time [ns]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +30,7 @@ class Sample:
     transforms: tuple[tuple[TransformBatch, ...], ...]  # of each recording
     static_transforms: tuple[TransformBatch, ...]  # of all recordings, whole
     poses: tuple[tuple[PoseBatch, ...], ...]  # of each recording
+    drives: tuple[Drive, ...]  # recordings that share transforms and poses
 
     def of_topic(self, topic: str) -> list[tuple[int, ScanBatch]]:
         """Scans of a topic with the index of their recording."""
@@ -32,22 +39,37 @@ class Sample:
 
 
 def take_sample(recordings: Sequence[Recording], scan_topics: Collection[str]) -> Sample:
-    """Read a few hundred scans, the transforms and poses around them, and all static transforms."""
+    """Read a few hundred scans, the transforms and poses they may need, and all static transforms.
+
+    Poses are looked up between samples up to 10 s apart, and in all recordings of a drive: so far around the
+    scans they are read, from each of them.
+    """
     n_windows = max(LEAST_WINDOWS, WINDOWS // max(1, len(recordings)))
     scans: dict[tuple[int, str], tuple[ScanBatch, ...]] = {}
-    static: list[TransformBatch] = []
-    transforms, poses = [], []
+    stretches: list[list[Stretch]] = []
     for index, recording in enumerate(recordings):
-        batches = _read_windows(recording, scan_topics, n_windows)
-        static += _static_transforms(recording)
-        transforms.append(tuple(batch for batch in batches if isinstance(batch, TransformBatch)))
-        poses.append(tuple(batch for batch in batches if isinstance(batch, PoseBatch)))
+        batches, spans = _read_windows(recording, scan_topics, n_windows)
         for topic in _present(recording, scan_topics):
-            found = tuple(batch for batch in batches if isinstance(batch, ScanBatch) and batch.topic == topic)
-            found = found or _first_scans(recording, topic)
+            found = tuple(batch for batch in batches if batch.topic == topic)
+            if not found:
+                found = _first_scans(recording, topic)
+                spans += [(int(one.log_ns.min()), int(one.log_ns.max()) + 1) for one in found]
             if found:
                 scans[index, topic] = found
-    return Sample(scans, tuple(transforms), tuple(static), tuple(poses))
+        stretches.append(spans)
+    around: list[list[TransformBatch | PoseBatch]] = [[] for _ in recordings]
+    for group in joined(recordings, MAX_GAP_NS):
+        spans = widened([span for index in group for span in stretches[index]], MAX_GAP_NS)
+        for index in group:
+            around[index] = _read_around(recordings[index], spans)
+    transforms = tuple(tuple(b for b in found if isinstance(b, TransformBatch)) for found in around)
+    return Sample(
+        scans,
+        transforms,
+        tuple(batch for recording in recordings for batch in _static_transforms(recording)),
+        tuple(tuple(b for b in found if isinstance(b, PoseBatch)) for found in around),
+        drives(recordings, transforms),
+    )
 
 
 def thinned(batch: ScanBatch, every: int) -> ScanBatch:
@@ -66,21 +88,45 @@ def thinned(batch: ScanBatch, every: int) -> ScanBatch:
     )
 
 
-def _read_windows(recording: Recording, scan_topics: Collection[str], n_windows: int) -> list[Batch]:
+def _read_windows(
+    recording: Recording, scan_topics: Collection[str], n_windows: int
+) -> tuple[list[ScanBatch], list[Stretch]]:
+    """Scans in windows, and where those lie."""
     present = _present(recording, scan_topics)
-    moving, _ = transform_topics(recording.topics)
-    others = [topic.name for topic in recording.topics if topic.msgtype in POSE_TYPES]
-    wanted = [*present, *moving, *others]
-    found: list[Batch] = []
-    stretches = tuple(windows(recording, _densest(recording, present), n_windows))
+    stretches = list(windows(recording, _densest(recording, present), n_windows))
     most = SCANS_OF_WINDOW * n_windows // len(stretches)
+    found: list[ScanBatch] = []
     for start_ns, end_ns in stretches:
-        parts = recording.batches(wanted, start_ns=start_ns, end_ns=end_ns)
-        found += _thin_scans([batch for part in parts for batch in part], most)
+        parts = recording.batches(present, start_ns=start_ns, end_ns=end_ns)
+        batches = [batch for part in parts for batch in part if isinstance(batch, ScanBatch)]
+        found += _thin_scans(batches, most)
+    return found, stretches
+
+
+def _read_around(recording: Recording, stretches: Sequence[Stretch]) -> list[TransformBatch | PoseBatch]:
+    """Moving transforms and poses in stretches of log time."""
+    moving, _ = transform_topics(recording.topics)
+    wanted = [*moving, *(topic.name for topic in recording.topics if topic.msgtype in POSE_TYPES)]
+    found: list[TransformBatch | PoseBatch] = []
+    for start_ns, end_ns in stretches:
+        if wanted and start_ns <= recording.end_ns and end_ns > recording.start_ns:
+            for part in recording.batches(wanted, start_ns=start_ns, end_ns=end_ns):
+                found += [batch for batch in part if isinstance(batch, TransformBatch | PoseBatch)]
     return found
 
 
-def windows(recording: Recording, count: int, n_windows: int) -> Iterator[tuple[int, int]]:
+def widened(stretches: Sequence[Stretch], by_ns: int) -> list[Stretch]:
+    """Stretches [start, end) that reach so much farther on both sides; those that then meet are one."""
+    found: list[Stretch] = []
+    for start_ns, end_ns in sorted(stretches):
+        if found and start_ns - by_ns <= found[-1][1]:
+            found[-1] = found[-1][0], max(found[-1][1], end_ns + by_ns)
+        else:
+            found.append((start_ns - by_ns, end_ns + by_ns))
+    return found
+
+
+def windows(recording: Recording, count: int, n_windows: int) -> Iterator[Stretch]:
     """Stretches of log time [start, end) spread evenly over a recording with `count` scans.
 
     Where they would cover the recording it is one stretch.
@@ -95,17 +141,13 @@ def windows(recording: Recording, count: int, n_windows: int) -> Iterator[tuple[
         yield start_ns, start_ns + length
 
 
-def _thin_scans(batches: Sequence[Batch], most: int) -> Iterator[Batch]:
+def _thin_scans(batches: Sequence[ScanBatch], most: int) -> Iterator[ScanBatch]:
     """Leave about so many scans of each topic."""
     counts: defaultdict[str, int] = defaultdict(int)
     for batch in batches:
-        if isinstance(batch, ScanBatch):
-            counts[batch.topic] += len(batch.stamps_ns)
+        counts[batch.topic] += len(batch.stamps_ns)
     for batch in batches:
-        if isinstance(batch, ScanBatch):
-            yield thinned(batch, round(counts[batch.topic] / most))
-        else:
-            yield batch
+        yield thinned(batch, round(counts[batch.topic] / most))
 
 
 def _static_transforms(recording: Recording) -> list[TransformBatch]:

@@ -34,6 +34,16 @@ _ENTRY = np.dtype(
 
 
 @dataclass(frozen=True, slots=True)
+class Arrived:
+    """What became of the scans that arrived; those not counted as anything but read are waiting."""
+
+    read: int = 0
+    malformed: int = 0  # with a stamp before 1970, which no result can hold
+    late: int = 0
+    outside: int = 0  # of the time span
+
+
+@dataclass(frozen=True, slots=True)
 class Kind:
     """What the scans of one block have in common."""
 
@@ -61,7 +71,8 @@ class ScanWindow:
     The window's clock is the newest stamp of the scans that have arrived. Whatever is more than 10 s behind
     the clock when it arrives is late; whatever falls more than 10 s behind is ready. How often scans are
     taken out makes no difference to their order, nor to which are late. Scans outside ``span_ns`` (end
-    exclusive) move the clock but do not come out.
+    exclusive) move the clock but do not come out. Nothing arrives any more once the clock is 10 s past the
+    span's end: by log order, wherever reading pauses.
     """
 
     def __init__(self, span_ns: tuple[int, int]) -> None:
@@ -91,23 +102,28 @@ class ScanWindow:
         self.nbytes += ranges.nbytes
         self._coming = np.concatenate([self._coming, entries])
 
-    def arrive(self, until_ns: int) -> tuple[int, int]:
+    def arrive(self, until_ns: int) -> Arrived:
         """Let in the scans recorded up to a log time, in log order.
 
-        Return how many came too late and how many lie outside the time span.
+        None arrives after the one that moves the clock past all that may come out.
         """
         here = self._coming["log"] <= until_ns
         arriving, self._coming = self._coming[here], self._coming[~here]
-        if not len(arriving):
-            return 0, 0
         arriving = _ordered(arriving, "log")
-        clock = np.maximum.accumulate(np.append(self.clock_ns, arriving["stamp"]))
+        malformed = arriving["stamp"] < 0
+        clock = np.maximum.accumulate(
+            np.append(self.clock_ns, np.where(malformed, BEGINNING_NS, arriving["stamp"]))
+        )
+        count = int(np.searchsorted(clock[:-1], self._span_ns[1] + WINDOW_NS))
+        if not count:
+            return Arrived()
+        arriving, malformed, clock = arriving[:count], malformed[:count], clock[: count + 1]
         self.clock_ns = int(clock[-1])
         stamps = arriving["stamp"]
-        outside = (stamps < self._span_ns[0]) | (stamps >= self._span_ns[1])
-        late = ((stamps < clock[:-1] - WINDOW_NS) | (stamps <= self._floor_ns)) & ~outside
-        self._waiting = np.concatenate([self._waiting, arriving[~late & ~outside]])
-        return int(np.count_nonzero(late)), int(np.count_nonzero(outside))
+        outside = ((stamps < self._span_ns[0]) | (stamps >= self._span_ns[1])) & ~malformed
+        late = ((stamps < clock[:-1] - WINDOW_NS) | (stamps <= self._floor_ns)) & ~outside & ~malformed
+        self._waiting = np.concatenate([self._waiting, arriving[~(late | outside | malformed)]])
+        return Arrived(count, *(int(np.count_nonzero(found)) for found in (malformed, late, outside)))
 
     @property
     def ready_before_ns(self) -> int:

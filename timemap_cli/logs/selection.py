@@ -145,7 +145,7 @@ def _connected(seen: Seen, scans: Sequence[str], wanted: InputSettings) -> Itera
         topic = _named_pose_topic(seen, wanted.poses)
         joined = seen.frames.connects(wanted.map_frame, topic.frame_id)
         frame = wanted.map_frame if joined else topic.frame_id
-        if _reaches(seen, topic, lasers):
+        if _reaches(seen, topic, scans):
             warnings = (*_frame_warnings(frame, wanted.map_frame), *_mount_warnings(seen, topic, lasers))
             yield PoseChoice(frame, topic.topic, warnings)
         return
@@ -154,11 +154,11 @@ def _connected(seen: Seen, scans: Sequence[str], wanted: InputSettings) -> Itera
         frames += sorted(seen.frames.like_odom() | {p.frame_id for p in seen.poses if "odom" in p.frame_id})
     for frame in frames:
         warnings = _frame_warnings(frame, wanted.map_frame)
-        if all(seen.frames.connects(frame, laser) for laser in lasers):
+        if _connects(seen, frame, scans):
             yield PoseChoice(frame, TF, warnings)
         if wanted.poses == "auto":
             for topic in _robot_poses(seen, frame):
-                if _reaches(seen, topic, lasers):
+                if _reaches(seen, topic, scans):
                     mount = _mount_warnings(seen, topic, lasers)
                     yield PoseChoice(frame, topic.topic, (*warnings, *mount))
 
@@ -197,10 +197,17 @@ def _robot_poses(seen: Seen, frame: str) -> list[PoseTopic]:
     return sorted(found, key=rank)
 
 
-def _reaches(seen: Seen, topic: PoseTopic, lasers: Sequence[str]) -> bool:
+def _connects(seen: Seen, frame: str, scans: Sequence[str]) -> bool:
+    """Whether a frame can be joined to some scans of each topic; a driver's first ones may name another frame."""
+    return all(
+        any(seen.frames.connects(frame, laser) for laser in seen.scan_frames.get(topic, ()))
+        for topic in scans
+    )
+
+
+def _reaches(seen: Seen, topic: PoseTopic, scans: Sequence[str]) -> bool:
     """Whether the frame whose pose it is can be joined to the lasers; one that is not named can."""
-    child = topic.child_frame_id
-    return not child or all(seen.frames.connects(child, laser) for laser in lasers)
+    return not topic.child_frame_id or _connects(seen, topic.child_frame_id, scans)
 
 
 def _mount_warnings(seen: Seen, topic: PoseTopic, lasers: Sequence[str]) -> tuple[str, ...]:
@@ -226,6 +233,9 @@ def _no_poses(
         ((t, f) for t, f in lasers if not seen.frames.connects(wanted.map_frame, f)), lasers[0]
     )
     if connected:
+        topic, frame = next(
+            ((t, f) for t, f in lasers if seen.frames.connects(connected[0].map_frame, f)), (topic, frame)
+        )
         return UsageError(
             f"no pose for {topic}: '{connected[0].map_frame}' and '{frame}' are connected, "
             "but at no time at which there are scans",
@@ -233,7 +243,7 @@ def _no_poses(
         )
     roots = [root for root in seen.frames.roots_of(frame) if root != wanted.map_frame]
     tries = [seen.line("--map-frame", root) for root in roots]
-    tries += [seen.line("--poses", p.topic) for p in seen.poses if _reaches(seen, p, [frame])]
+    tries += [seen.line("--poses", p.topic) for p in seen.poses if _reaches(seen, p, [topic])]
     hint = "\n".join(dict.fromkeys(tries))
     if not seen.frames and not seen.poses:
         return UsageError(

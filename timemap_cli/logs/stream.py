@@ -50,8 +50,8 @@ class EndOfRecording:
 class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
-    Reasons: ``malformed`` (or what decoding said), ``outside_time``, ``late`` (more than 10 s behind the
-    newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
+    Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
+    10 s behind the newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
     """
 
     read: int = 0
@@ -72,18 +72,20 @@ def sweeps(
     *,
     start_ns: int | None = None,
     end_ns: int | None = None,
+    drives: Sequence[Sequence[int]] | None = None,
 ) -> Iterator[Sweeps | EndOfRecording]:
     """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
 
     ``recordings`` are in the order of their starts; ``beams`` is by (index, topic).
-    Recordings that overlap or follow within 10 s are one drive: merged, with common transforms. Within a
+    Recordings of one of the ``drives`` are merged, with common transforms: where not given, those that
+    overlap or follow within 10 s. Within a
     drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
     (open) cut by the scans' stamps; static transforms count wherever they stand. Which scans share a block
     has no bearing on any value.
     """
     span_ns = (BEGINNING_NS if start_ns is None else start_ns, NEVER_NS if end_ns is None else end_ns)
     static = [_static_transforms(recording, counts) for recording in recordings]
-    for number, group in enumerate(joined(recordings, WINDOW_NS)):
+    for number, group in enumerate(drives or joined(recordings, WINDOW_NS)):
         poses = PoseSource(selection.map_frame, selection.pose)
         # A drive's first part may be the only one to hold the static transforms: its own come last and
         # replace what the others say.
@@ -116,7 +118,8 @@ class _Drive:
         self._window = ScanWindow(span_ns)
         self._frame_codes: dict[str, int] = {}
         self._newest_ns: dict[int, int] = {}  # recording -> largest stamp of its scans
-        self._ends: list[tuple[int, int]] = []  # (stamp after which it is over, recording)
+        self._ends: list[tuple[int, int]] = []  # (stamp after which it is over, recording), not yet told
+        self._ended: set[int] = set()
         self._scan_log_ns = NEVER_NS
 
     def blocks(self, group: Sequence[int]) -> Iterator[Sweeps | EndOfRecording]:
@@ -154,10 +157,10 @@ class _Drive:
                 self._counts.transforms_dropped += batch.count
 
     def _take_scans(self, index: int, batch: ScanBatch) -> None:
-        self._counts.read += len(batch.stamps_ns)
         if not len(batch.stamps_ns):
             return
         if not _has_bearings(batch.layout):
+            self._counts.read += len(batch.stamps_ns)
             self._counts.drop("malformed", len(batch.stamps_ns))
             return
         layout, frame, rank = batch.layout, batch.frame_id.lstrip("/"), self._rank[batch.topic]
@@ -182,14 +185,17 @@ class _Drive:
 
     def _end(self, index: int) -> None:
         """Note a recording read to its end: it is over after its newest scan, or after what is out."""
-        if index not in [ended for _, ended in self._ends]:
+        if index not in self._ended:
+            self._ended.add(index)
             newest_ns = self._newest_ns.get(index, BEGINNING_NS)
             self._ends.append((max(newest_ns, self._window.ready_before_ns), index))
 
     def _arrive(self, until_ns: int) -> None:
-        late, outside = self._window.arrive(until_ns)
-        self._counts.drop("late", late)
-        self._counts.drop("outside_time", outside)
+        arrived = self._window.arrive(until_ns)
+        self._counts.read += arrived.read
+        self._counts.drop("malformed", arrived.malformed)
+        self._counts.drop("late", arrived.late)
+        self._counts.drop("outside_time", arrived.outside)
 
     def _let_out(self, until_ns: int) -> Iterator[Sweeps | EndOfRecording]:
         """Yield what is ready if it is worth a block, or everything after a long silence of the scanner."""

@@ -10,11 +10,14 @@ from timemap_cli.config import InputSettings, Settings
 from timemap_cli.errors import UsageError
 from timemap_cli.logs.batches import PoseBatch, ScanBatch
 from timemap_cli.logs.beams import Beams, settle
+from timemap_cli.logs.drives import Drive
 from timemap_cli.logs.frames import Frames
+from timemap_cli.logs.interleave import joined
 from timemap_cli.logs.missing_returns import MissingReturns, examine
 from timemap_cli.logs.poses import TF, PoseSource
 from timemap_cli.logs.recordings import Recording
 from timemap_cli.logs.sampling import Sample, take_sample
+from timemap_cli.logs.scan_window import WINDOW_NS
 from timemap_cli.logs.selection import (
     POSE_TYPES,
     PoseChoice,
@@ -38,6 +41,7 @@ class Survey:
     spans_ns: tuple[
         tuple[int, int], ...
     ]  # begin and end of each recording that has scans, in time of their stamps
+    drives: tuple[Drive, ...]  # recordings that are merged and share their transforms
 
     @property
     def span_ns(self) -> tuple[int, int]:
@@ -89,7 +93,8 @@ def survey_sample(
         *_carried(seen, sample, selection),
         *_short_sighted(beams, settings),
     )
-    return Survey(selection, beams, missing, problems, _spans_ns(recordings, sample, selection))
+    spans_ns = _spans_ns(recordings, sample, selection)
+    return Survey(selection, beams, missing, problems, spans_ns, sample.drives)
 
 
 def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:
@@ -124,16 +129,20 @@ class SampledPoses:
 
     def __init__(self, sample: Sample) -> None:
         self._sample = sample
-        self._sources: dict[tuple[int, str, str], PoseSource] = {}
+        self._sources: dict[tuple[Drive, str, str], PoseSource] = {}
 
     def source(self, index: int, map_frame: str, pose: str) -> PoseSource:
-        """Poses of one recording; static transforms of the others count too."""
-        key = index, map_frame, pose
+        """Poses of the drive that a recording belongs to; static transforms of the others count too."""
+        (drive,) = (drive for drive in self._sample.drives if index in drive)
+        key = drive, map_frame, pose
         if key not in self._sources:
             source = self._sources[key] = PoseSource(map_frame, pose)
-            for transforms in (*self._sample.static_transforms, *self._sample.transforms[index]):
+            for transforms in (
+                *self._sample.static_transforms,
+                *(batch for other in drive for batch in self._sample.transforms[other]),
+            ):
                 source.add(transforms)
-            for poses in self._sample.poses[index]:
+            for poses in (batch for other in drive for batch in self._sample.poses[other]):
                 source.add(poses)
         return self._sources[key]
 
@@ -215,11 +224,25 @@ def _placed(batch: ScanBatch, beams: Beams, source: PoseSource) -> Sweeps:
     )
 
 
+def _unlike(recordings: Sequence[Recording], sample: Sample) -> list[str]:
+    """A sentence for every group of recordings that are of one time and yet not of one drive."""
+    found = []
+    for group in joined(recordings, WINDOW_NS):
+        apart = [drive for drive in sample.drives if drive[0] in group]
+        if len(apart) > 1:
+            names = " and ".join(", ".join(str(recordings[index].path) for index in drive) for drive in apart)
+            found.append(
+                f"{names} hold other poses for the same times, as of two robots or two simulations: "
+                "they are read one after the other"
+            )
+    return found
+
+
 def _problems(
     recordings: Sequence[Recording], sample: Sample, poses: SampledPoses, selection: Selection
 ) -> tuple[str, ...]:
     """What a replay of the recordings would be short of."""
-    found = []
+    found = _unlike(recordings, sample)
     for index, recording in enumerate(recordings):
         topics = [topic for topic in selection.scan_topics if (index, topic) in sample.scans]
         if not topics:

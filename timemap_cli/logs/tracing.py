@@ -18,7 +18,6 @@ from timemap_cli.logs.raw import RawMessages
 
 LITTLE_ENDIAN_CDR = b"\x00\x01"  # first bytes of the encapsulation header
 CDR_ORIGIN = 4  # alignment counts from behind the encapsulation header
-CDR_PADDING = 3  # bytes a writer may add at the end
 WIDTHS = {"int32": 4, "uint32": 4, "float32": 4, "float64": 8}
 JOINED_GAP = 128  # fixed parts of a message that are closer than this are compared together [bytes]
 MOST_TRACES = 64  # of one length of message, before the rest is decoded one by one
@@ -104,7 +103,8 @@ def trace(raw: bytes, fields: Fields, *, is_cdr: bool, repeated: bool) -> Trace 
     except (struct.error, UnicodeDecodeError):
         return None
     surplus = len(raw) - walk.position
-    if not 0 <= surplus <= (CDR_PADDING if is_cdr else 0):
+    # Behind CDR a middleware may leave what it needs: its buffer is often longer than the message.
+    if surplus < 0 or (surplus and not is_cdr):
         return None
     return Trace(elements, tuple(walk.fixed))
 

@@ -26,7 +26,7 @@ class TransformBuffer:
     """Transforms between frames over time, forgetting what lies behind.
 
     Frame names have no leading slash. ``rejected`` counts transforms that cannot be used: a
-    rotation of length zero, NaN, a frame that is its own parent or has no name.
+    rotation of length zero, NaN, a place that cannot be on earth, a frame that is its own parent or has no name.
     """
 
     def __init__(self) -> None:

@@ -71,6 +71,7 @@ class Draw:
         self._sum = np.zeros(0, np.int64)  # of their shares [2^-32]
         self._next = np.zeros(0, np.int64)  # first turn in which no scan was taken yet
         self._stamp = np.zeros(0, np.int64)  # [ns] the newest scan that reached the level
+        self._owed = np.zeros(0)  # places due for time gone by, which the next scans are to fill
         self._wanted = self._granted = 0.0  # shares due in all, and those of them a scan can fill
 
     @property
@@ -83,6 +84,7 @@ class Draw:
         for name, empty in (("_reached", 0), ("_sum", 0), ("_next", 0), ("_stamp", _NEVER)):
             array = getattr(self, name)
             setattr(self, name, np.append(array, np.full(nodes - len(array), empty, np.int64)))
+        self._owed = np.append(self._owed, np.zeros(nodes - len(self._owed)))
 
     def taken(self, groups: Groups, stamps_ns: Ints, keys: chance.Keys) -> npt.NDArray[np.bool_]:
         """Which scans (n,) the level takes; `stamps_ns` is in the groups' order, `keys` per node."""
@@ -109,10 +111,29 @@ class Draw:
         reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
         young = np.minimum(1.0, self._level.window / reached)
         due = self._due(groups, stamps_ns)
-        granted = np.minimum(due, 1.0)
+        granted = self._granted_to(groups, due)
         self._wanted += float(due.sum())
         self._granted += float(granted.sum())
         return np.asarray(np.rint(np.maximum(young, granted) * _ONE), np.int64)
+
+    def _granted_to(self, groups: Groups, due: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """What each scan fills of what is due, at most 1; it leaves the rest, of one longest step at most, to the next.
+
+        A robot that passes by stands for 10 s with its first scan, which one scan cannot fill.
+        """
+        granted = np.minimum(due, 1.0)
+        if not self._level.in_seconds:
+            return granted
+        most = self._level.places_replaced(LONGEST_STEP)
+        before, owed = -1, 0.0
+        for i, (node, places) in enumerate(zip(groups.nodes.tolist(), due.tolist(), strict=True)):
+            if node != before:
+                before, owed = node, float(self._owed[node])
+            owed = min(owed + places, most)
+            granted[i] = min(owed, 1.0)
+            owed -= float(granted[i])
+            self._owed[node] = owed
+        return granted
 
     def _due(self, groups: Groups, stamps_ns: Ints) -> npt.NDArray[np.float64]:
         """Places of the window that each scan should replace; above 1 where it stands for too long a time."""

@@ -136,7 +136,7 @@ def _raster_round(outlines: Sequence[_Floats], resolution: float) -> Raster:
     high = np.max([o.max(axis=(0, 1)) for o in outlines], axis=0)
     while True:
         first = np.floor(low / resolution)
-        columns, rows = (np.floor(high / resolution) - first + 1).astype(int)
+        columns, rows = np.floor(high / resolution) - first + 1  # floats: int64 may not hold their product
         if rows * columns <= _MAX_CELLS:
             origin_x, origin_y = first * resolution
             return Raster(float(origin_x), float(origin_y), resolution, int(rows), int(columns))

@@ -21,8 +21,12 @@ class Level:
     in_seconds: bool = False
 
     def places_replaced(self, step: float) -> float:
-        """Places of the window to be replaced by a scan that stands for `step` scans or seconds.
+        """Places of the window to be replaced for `step` scans or seconds.
 
-        Up to 1 it is the probability with which the scan is taken; more than 1 cannot be had.
+        Up to 1 it is the probability with which a scan is taken; above, how many scans must be: each replaces
+        1 / N of what the one before it left.
         """
-        return step * math.log(2) / self.half_life / -math.log1p(-1 / self.window)
+        forgotten = math.log(2) / self.half_life * step
+        if self.window == 1:
+            return -math.expm1(-forgotten)
+        return forgotten / -math.log1p(-1 / self.window)

@@ -27,7 +27,7 @@ class Remembered:
     """The memory of m nodes as the estimate reads it: as deep as the fullest angle bin; empty places are UNSEEN."""
 
     samples: Ranges  # (m, angle_bins, most samples) [mm]
-    ages: Counts  # (m, angle_bins, most samples) scans since that did not see the angle bin, once the level was full
+    ages: Counts  # (m, angle_bins, most samples) scans taken since by a full level that evicted nothing there
     left: Ranges  # (m, angle_bins, most pairs) [mm] a pair's range in this angle bin ...
     right: Ranges  # (m, angle_bins, most pairs) [mm] ... and in the next
     n_samples: Ints  # (m, angle_bins)
@@ -54,10 +54,12 @@ class Memory:
         self._stamps_ns = np.zeros(0, np.int64)  # the newest of them
         self._n_samples = np.zeros((0, angle_bins), np.uint32)
         self._n_pairs = np.zeros((0, angle_bins), np.uint32)
-        self._missed = np.zeros((0, angle_bins), np.uint32)  # scans a full level took that did not see it
+        self._spared = np.zeros(
+            (0, angle_bins), np.uint32
+        )  # scans taken after N that evicted no sample there
         self._last_seen_ns = np.zeros((0, angle_bins), np.int64)
         self._samples = np.zeros((0, angle_bins, level.window), np.uint16)
-        self._missed_then = np.zeros((0, angle_bins, level.window), np.uint32)  # _missed when a sample came
+        self._spared_then = np.zeros((0, angle_bins, level.window), np.uint32)  # _spared when a sample came
         self._left = np.zeros((0, angle_bins, level.window), np.uint16)
         self._right = np.zeros((0, angle_bins, level.window), np.uint16)
 
@@ -81,7 +83,7 @@ class Memory:
         room = len(self._taken)
         if room >= self._rows:
             return
-        counts = (self._n_samples, self._n_pairs, self._missed, self._missed_then)
+        counts = (self._n_samples, self._n_pairs, self._spared, self._spared_then)
         for array in (self._taken, self._stamps_ns, self._last_seen_ns, *counts):
             array.resize((self._rows + _SPARE_ROWS, *array.shape[1:]), refcheck=False)
         for store in (self._samples, self._left, self._right):
@@ -105,8 +107,7 @@ class Memory:
         keys = chance.mixed(self._keys[nodes[order]], count)
         random = chance.mixed(keys[:, None], np.arange(ranges.shape[1]))
         seen = ranges != UNSEEN
-        forgets = count > self.level.window  # a window that still fills forgets nothing
-        self._store_samples(groups, ranges, seen, forgets, random)
+        self._store_samples(groups, ranges, seen, count, random)
         self._store_pairs(groups, ranges, seen, random << np.uint64(32))
         self._taken[row] = count  # ascending within a node: the last one stays
         self._stamps_ns[row] = stamps_ns[order]
@@ -114,18 +115,22 @@ class Memory:
         return changed
 
     def _store_samples(
-        self, groups: Groups, ranges: Ranges, seen: Bools, forgets: Bools, random: chance.Keys
+        self, groups: Groups, ranges: Ranges, seen: Bools, taken: Ints, random: chance.Keys
     ) -> None:
-        missed = groups.running_sums(~seen & forgets[:, None], self._missed)
+        """Keep each scan's ranges; `taken` (n,) is how many scans its node's memory has taken with it."""
+        number = groups.running_sums(seen, self._n_samples)
+        evicts = seen & (number > self.level.window)
+        spared = groups.running_sums(~evicts & (taken > self.level.window)[:, None], self._spared)
         chosen = np.flatnonzero(seen)
-        places = self._places(groups, seen, chosen, self._n_samples, random)
+        places = self._places(groups, number, chosen, self._n_samples, random)
         self._samples.reshape(-1)[places] = ranges.take(chosen)
-        self._missed_then.reshape(-1)[places] = missed.take(chosen)
+        self._spared_then.reshape(-1)[places] = spared.take(chosen)
 
     def _store_pairs(self, groups: Groups, ranges: Ranges, seen: Bools, random: chance.Keys) -> None:
         both = seen & np.roll(seen, -1, axis=1)
+        number = groups.running_sums(both, self._n_pairs)
         chosen = np.flatnonzero(both)
-        places = self._places(groups, both, chosen, self._n_pairs, random)
+        places = self._places(groups, number, chosen, self._n_pairs, random)
         self._left.reshape(-1)[places] = ranges.take(chosen)
         self._right.reshape(-1)[places] = np.roll(ranges, -1, axis=1).take(chosen)
 
@@ -133,18 +138,22 @@ class Memory:
         newest = np.maximum.reduceat(np.where(seen, stamps_ns[:, None], 0), groups.starts)
         self._last_seen_ns[groups.distinct] = np.maximum(newest, self._last_seen_ns[groups.distinct])
 
-    def _places(self, groups: Groups, seen: Bools, chosen: Ints, count: Counts, random: chance.Keys) -> Ints:
+    def _places(
+        self, groups: Groups, number: Counts, chosen: Ints, count: Counts, random: chance.Keys
+    ) -> Ints:
         """Flat index of the place that each chosen value takes: the next empty one, else a random one.
 
-        Later scans come later, so where two take one place, the later stays.
+        `number` (n, angle_bins) counts an angle bin's values, from 1, and above the window where all places are taken;
+        `count` (nodes, angle_bins), of those there are now, is cut to the window. Later scans come later, so where two
+        take one place, the later stays.
         """
         window = self.level.window
-        place = groups.running_sums(seen, count).take(chosen).astype(np.int64)  # 1 for the first value ever
+        place = number.take(chosen).astype(np.int64)
         place -= 1
         full = np.flatnonzero(place >= window)
         place[full] = chance.below(random.take(chosen.take(full)), window)
         np.minimum(count, window, out=count)
-        angle_bins = seen.shape[1]
+        angle_bins = number.shape[1]
         row_start = np.repeat((groups.nodes * angle_bins * window), angle_bins)
         row_start.reshape(-1, angle_bins)[:] += np.arange(angle_bins) * window
         place += row_start.take(chosen)
@@ -158,7 +167,7 @@ class Memory:
         samples, pairs = (slice(max(1, int(count.max(initial=0)))) for count in (n_samples, n_pairs))
         return Remembered(
             self._samples[rows, :, samples],
-            self._missed[rows][:, :, None] - self._missed_then[rows, :, samples],
+            self._spared[rows][:, :, None] - self._spared_then[rows, :, samples],
             self._left[rows, :, pairs],
             self._right[rows, :, pairs],
             n_samples,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.free_ways import FreeWays
 from timemap_cli.model.gate import Gate, Passages, passing
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import NO_NODE, Placement
@@ -52,6 +53,7 @@ class Observer:
         self._placement = Placement(spacing, nodes)
         self._gate = gate
         self._passages: Passages = {}
+        self._ways = FreeWays()
         self._angle_bins = angle_bins
         self._radius = radius
 
@@ -65,8 +67,11 @@ class Observer:
         places = _places(sweeps)
         nodes = self._placement.assign(places[:, :2])
         near = np.flatnonzero(nodes != NO_NODE)
-        centres = self._placement.centres[nodes[near]]
-        ranges, judged = virtual_scans(sweeps.rows(near), centres, self._angle_bins, self._radius)
+        towards = self._placement.centres_of(nodes)
+        free = self._ways.free(sweeps, towards)
+        ranges, judged = virtual_scans(
+            sweeps.rows(near), towards[near], free[near], self._angle_bins, self._radius
+        )
         rows = near[judged]
         nodes, stamps_ns = nodes[rows], sweeps.stamps_ns[rows]
         return Observations(

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.free_ways import ROBOT_RADIUS
 from timemap_cli.model.rays import Bools, Floats, Rays, rays
 from timemap_cli.model.sweeps import Sweeps
 
 Poses = npt.NDArray[np.float64]
 
-BLIND_MARGIN = 0.1  # [m] by which the disc where the robot stands reaches beyond the node's centre
+BLIND_MARGIN = 0.1  # [m] by which the disc round the robot reaches beyond a node to which the way is free
 LARGEST_DISC = 2.5  # [m] a node farther away than this must have been seen
 
 
@@ -29,18 +30,18 @@ class Outlines:
     turn: Floats  # (n, 1) +1: vertices run counter-clockwise round the robot, -1: clockwise
 
 
-def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int) -> Outlines:
-    """Polygons of n scans relative to the n node centres (n, 2) [m, map frame]."""
+def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], ways_free: Bools, angle_bins: int) -> Outlines:
+    """Polygons of n scans relative to the n node centres (n, 2) [m, map frame]; `ways_free` (n,) as in `FreeWays`."""
     first, last = sweeps.map_from_laser_first, sweeps.map_from_laser_last
     fan = rays(sweeps, angle_bins)
     origin = first[:, :2, 3] - centres
     missing = np.isnan(fan.length)
-    blind = np.minimum(np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN, LARGEST_DISC)
+    beyond_node = np.minimum(np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN, LARGEST_DISC)
+    blind = np.where(ways_free, beyond_node, ROBOT_RADIUS)
     length = np.where(missing, blind.astype(np.float32)[:, None], fan.length)
     moves = not np.array_equal(first, last)
-    if moves:
-        length *= _chord_correction(first, last, fan.progress)
-    x, y = (_place(first[:, a], (last - first)[:, a], origin[:, a], fan, length, moves) for a in (0, 1))
+    turning = _Turning.of(first, last, fan.progress) if moves else None
+    x, y = (_place(first[:, a], (last - first)[:, a], origin[:, a], fan, length, turning) for a in (0, 1))
     hit, disc = np.empty(x.shape, np.bool_), np.empty(x.shape, np.bool_)
     hit[:, :-1] = fan.hit
     disc[:, :-1] = missing
@@ -52,40 +53,71 @@ def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int) 
     return Outlines(x, y, hit, disc, turn[:, None])
 
 
-def _chord_correction(first: Poses, last: Poses, progress: Floats) -> Floats:
-    """Factor (n, rays) that takes a blend of two rotations back to length 1, to second order.
+@dataclass(frozen=True, slots=True)
+class _Turning:
+    """How a direction turns evenly from where the first pose has it to where the last has it.
 
-    Half way between two directions theta apart, their mean is shorter by theta^2 / 8.
+    It is `stretch * first + share * (last - first)` (n, rays). Where nothing turns, stretch is exactly 1.
     """
-    difference = last[:, :, :3] - first[:, :, :3]
-    half_square = (difference * difference).sum(axis=(1, 2)) / 4  # theta^2 / 2
-    bend: Floats = (progress - progress * progress) * half_square.astype(np.float32)[:, None]
-    bend += 1
-    return bend
+
+    stretch: Floats
+    share: Floats
+
+    @classmethod
+    def of(cls, first: Poses, last: Poses, progress: Floats) -> "_Turning":
+        """Weights sin(p theta) / sin(theta) at progress p, as a series: library sines differ between processors."""
+        difference = last[:, :, :3] - first[:, :, :3]
+        v = (difference * difference).sum(axis=(1, 2)) / 4  # 1 - cos(theta)
+        square = 2 * v * (1 + v * (1 / 6 + v * (2 / 45 + v / 70)))  # theta^2
+        behind = 1 - progress
+        gained = _gained(square, progress)
+        return cls(1 + (gained + _gained(square, behind)), progress + gained)
+
+
+def _gained(square: npt.NDArray[np.float64], part: Floats) -> Floats:
+    """sin(p theta) / sin(theta) - p for p (n, rays) and theta^2 (n,), to the sixth order."""
+    t = square
+    constant = t * (1 / 6 + t * (7 / 360 + t * (31 / 15120)))
+    linear = -t * t * (3 / 360 + t * (18 / 15120))
+    quadratic = t * t * t * (3 / 15120)
+    c0, c1, c2 = (each.astype(np.float32)[:, None] for each in (constant, linear, quadratic))
+    p2 = part * part
+    gained: Floats = c2 * p2
+    gained += c1
+    gained *= p2
+    gained += c0
+    gained *= part * (1 - p2)
+    return gained
 
 
 def _place(
-    pose: Poses, change: Poses, origin: npt.NDArray[np.float64], fan: Rays, length: Floats, moves: bool
+    pose: Poses,
+    change: Poses,
+    origin: npt.NDArray[np.float64],
+    fan: Rays,
+    length: Floats,
+    turning: _Turning | None,
 ) -> Floats:
     """One coordinate (n, rays + 1) [m] of the ends of all rays; the last column is left for the closing vertex.
 
     `pose` (n, 4) is that coordinate's row of map_from_laser at the first beam, `change` (n, 4) what it changes by
-    until the last; `origin` (n,) is the laser's coordinate relative to the node.
+    until the last; `origin` (n,) is the laser's coordinate relative to the node. Without `turning` nothing moves.
     """
     out = np.empty((len(length), length.shape[1] + 1), np.float32)
     end = out[:, :-1]
     along_x, along_y, at = (column.astype(np.float32)[:, None] for column in (pose[:, 0], pose[:, 1], origin))
     np.multiply(along_x, fan.cos, out=end)
     end += along_y * fan.sin
-    if moves:
+    if turning:
+        end *= turning.stretch
         step = change.astype(np.float32)
         turned = step[:, 0, None] * fan.cos
         turned += step[:, 1, None] * fan.sin
-        turned *= fan.progress
+        turned *= turning.share
         end += turned
     end *= length
     end += at
-    if moves:
+    if turning:
         end += step[:, 3, None] * fan.progress
     return out
 

@@ -27,14 +27,21 @@ class Placement:
         """(nodes, 2) [m, map frame]."""
         return np.array([(node.x, node.y) for node in self.nodes], np.float64).reshape(-1, 2)
 
+    def centres_of(self, nodes: Ints) -> Floats:
+        """Centres (n, 2) [m, map frame] of these nodes (n,); NaN for NO_NODE."""
+        return np.vstack((self.centres, np.full(2, np.nan)))[nodes]
+
     def assign(self, places: Floats) -> Ints:
-        """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order; NO_NODE if none is near."""
+        """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order.
+
+        NO_NODE if none is near, or the place is not finite.
+        """
         chosen = np.full(len(places), NO_NODE)
         start = 0
         while start < len(places):
             nearest, near = self._nearest(places[start:])
             chosen[start:] = np.where(near, nearest, NO_NODE)
-            far = np.flatnonzero(~near)
+            far = np.flatnonzero(~near & np.isfinite(places[start:]).all(axis=1))
             if self._all_given or not len(far):
                 break
             start += int(far[0])

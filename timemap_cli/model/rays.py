@@ -17,6 +17,7 @@ Floats = npt.NDArray[np.float32]
 Bools = npt.NDArray[np.bool_]
 
 _ARC_STEP = math.radians(30)  # coarse enough to be cheap; the chord still passes outside the node's centre
+_LONGEST = np.float32(1000)  # [m] beyond every radius; the square of a driver's largest number is infinite
 _WIDEST_SEAM = 2.5  # beam spacings between the last beam and the first that still close the circle
 
 
@@ -64,6 +65,7 @@ def rays(sweeps: Sweeps, angle_bins: int) -> Rays:
         cos, sin, progress = (each[None] for each in (fan.cos, fan.sin, fan.progress))
     hit = np.isfinite(length)
     np.minimum(length, np.float32(sweeps.clear_range), out=length, where=~hit)  # NaN stays NaN
+    np.minimum(length, _LONGEST, out=length)
     return Rays(cos, sin, progress, length, hit, fan.counter_clockwise)
 
 
@@ -95,7 +97,7 @@ def _fan(float64_bearings: bytes) -> _Fan:
     progress = [i / last for i in range(beams)]
     gap = math.tau - abs(stop - start)
     if gap > _WIDEST_SEAM * spacing or beams < 3:
-        pieces = math.ceil(gap / _ARC_STEP)
+        pieces = max(1, math.ceil(gap / _ARC_STEP))
         angles += [stop + sign * gap * i / pieces for i in range(pieces + 1)]
         progress += [1 - i / pieces for i in range(pieces + 1)]
     # cos and sin one by one: NumPy's own differ between processors in the last bit

@@ -107,7 +107,7 @@ def _spread_out(memory: Remembered, size: int) -> Ints:
     """Angle bins whose known ranges may lie so far apart that there is a cut; most do not, and need no sorting.
 
     The stretched scale grows ever slower with range, so two ranges are no farther apart on it than its slope at the
-    nearest range makes them.
+    nearest range makes them. Clear is a state of its own, however near to it a range is.
     """
     stores = (memory.samples, memory.left, np.roll(memory.right, 1, axis=1))
     extremes = [_extremes(store.reshape(-1, store.shape[2])) for store in stores]
@@ -115,7 +115,8 @@ def _spread_out(memory: Remembered, size: int) -> Ints:
     beyond = np.maximum.reduce([beyond for _, beyond in extremes])
     apart = beyond - np.minimum(nearest, beyond)
     widening = np.maximum(1, nearest / (STRETCH_FROM * 1000))
-    return np.flatnonzero(apart > widening * (size // 2 - 1) * _UNIT * 1000)
+    also_clear = (beyond == CLEAR + 1) & (nearest < CLEAR)
+    return np.flatnonzero(also_clear | (apart > widening * (size // 2 - 1) * _UNIT * 1000))
 
 
 def _extremes(ranges: Ranges) -> tuple[Ranges, Ranges]:

@@ -25,10 +25,11 @@ _BLOCK = 48  # scans at a time at most, so that the work stays in the processor'
 
 
 def virtual_scans(
-    sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int, radius: float
+    sweeps: Sweeps, centres: npt.NDArray[np.float64], ways_free: Bools, angle_bins: int, radius: float
 ) -> tuple[Ranges, Bools]:
     """What n scans would have been from n node centres (n, 2) [m, map frame].
 
+    `ways_free` (n,): the way from the laser to the node is known to be free (`FreeWays`), so the scan need not see it.
     Returns ranges (n, angle_bins) [mm], measured ones or CLEAR or UNSEEN, and whether the scan can judge its node at
     all (n,): the node's centre must lie in what the scan saw free, and some beam must be evidence.
     """
@@ -38,14 +39,16 @@ def virtual_scans(
     borders = [len(sweeps) * i // max(1, blocks) for i in range(blocks + 1)]
     for start, stop in pairwise(borders):
         part = slice(start, stop)
-        ranges[part], judged[part] = _from_nodes(sweeps.rows(part), centres[part], angle_bins, radius)
+        ranges[part], judged[part] = _from_nodes(
+            sweeps.rows(part), centres[part], ways_free[part], angle_bins, radius
+        )
     return ranges, judged
 
 
 def _from_nodes(
-    sweeps: Sweeps, centres: npt.NDArray[np.float64], angle_bins: int, radius: float
+    sweeps: Sweeps, centres: npt.NDArray[np.float64], ways_free: Bools, angle_bins: int, radius: float
 ) -> tuple[Ranges, Bools]:
-    outline = outlines(sweeps, centres, angle_bins)
+    outline = outlines(sweeps, centres, ways_free, angle_bins)
     sight = line_of_sight(outline, angle_bins)
     distance = _distances(outline)
     reach = math.floor(radius * 1000 + 1e-6)

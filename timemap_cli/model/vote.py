@@ -131,7 +131,7 @@ def _sums(labels: npt.NDArray[np.integer], weights: npt.NDArray[np.generic], siz
 
 @cache
 def _freshness(window: int) -> npt.NDArray[np.int32]:
-    """Weight of a sample by the scans taken since that did not see its angle bin [1 / SCALE]."""
+    """Weight of a sample by its age in scans [1 / SCALE]."""
     kept = 1 - 1 / window
     weights = [1.0]
     while weights[-1] > OLDEST:

@@ -1,0 +1,151 @@
+"""When the way from the laser to its node is known to be free: what was seen, and where the robot was."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.model.scenes import cast, fan, map_directions, pose, rectangle, sweeps
+from timemap_cli.model.free_ways import ROBOT_RADIUS, FreeWays
+
+NARROW = fan(181, 180)
+HALL = rectangle(-6, -4, 6, 4)
+WALL = rectangle(-6, -0.05, 3, 0.05)  # along the hall, open at its right end
+EAST, NORTH, WEST, SOUTH = 0.0, math.pi / 2, math.pi, -math.pi / 2
+
+
+def drive(walls, places, bearings=NARROW, *, upside_down=False):
+    """Scans at these places (x, y, yaw), ten a second."""
+    poses = [pose(*place, upside_down=upside_down) for place in places]
+    ranges = [
+        cast(walls, x, y, map_directions(placed, bearings))
+        for (x, y, _), placed in zip(places, poses, strict=True)
+    ]
+    return sweeps(ranges, bearings, poses)
+
+
+def along(*corners, step=0.1):
+    """Places (x, y, yaw) on straight lines between corners, looking ahead."""
+    places = []
+    for (x1, y1), (x2, y2) in pairwise(corners):
+        count = round(math.hypot(x2 - x1, y2 - y1) / step)
+        yaw = math.atan2(y2 - y1, x2 - x1)
+        places += [(x1 + (x2 - x1) * i / count, y1 + (y2 - y1) * i / count, yaw) for i in range(count + 1)]
+    return places
+
+
+def free(scans, x, y):
+    """Whether each scan knows a free way to (x, y)."""
+    return FreeWays().free(scans, np.tile([float(x), float(y)], (len(scans), 1))).tolist()
+
+
+@pytest.mark.parametrize("upside_down", [False, True])
+@pytest.mark.parametrize("degrees", [180, -180, 270, 360, -359])
+@pytest.mark.parametrize("yaw", [0.0, 1.0, 2.5, -2.0])
+def test_a_single_scan_knows_the_ways_that_it_sees(degrees, yaw, upside_down):
+    scan = drive(HALL, [(0.0, 1.0, yaw)], fan(abs(degrees) + 1, degrees), upside_down=upside_down)
+    for bearing in np.radians(np.arange(-177, 180, 10)):
+        x, y = 0.9 * math.cos(yaw + bearing), 1.0 + 0.9 * math.sin(yaw + bearing)
+        assert free(scan, x, y) == [abs(bearing) < math.radians(abs(degrees) / 2)]
+
+
+def test_no_way_leads_through_what_a_scan_hit():
+    scan = drive(np.concatenate((HALL, WALL)), [(0.0, 0.6, SOUTH)])
+    assert free(scan, 0.0, 0.1) == [True]
+    assert free(scan, 0.0, -0.1) == free(scan, 0.3, -0.3) == [False]
+
+
+def test_where_the_robot_stands_is_free_on_every_side():
+    scan = drive(HALL, [(0.0, 1.0, EAST)])
+    assert free(scan, -ROBOT_RADIUS + 0.01, 1.0) == [True]
+    assert free(scan, -ROBOT_RADIUS - 0.2, 1.0) == [False]
+
+
+def test_a_robot_that_drove_on_knows_the_way_back():
+    assert all(free(drive(HALL, along((-2, 1), (0, 1)), fan(61, 60)), -2.0, 1.0))
+
+
+def test_a_node_beside_the_track_is_known_from_the_scans_that_saw_it_ahead():
+    scans = drive(HALL, along((-2, 1), (1, 1)))
+    assert free(scans, 0.3, 1.6)[-1]
+    assert not free(scans.rows(slice(-1, None)), 0.3, 1.6)[0]
+
+
+def test_a_wall_between_two_tracks_is_no_way_whatever_was_seen_of_its_sides():
+    """Along the wall, round its end, and back on its other side: the node is 1 m away, and was 1 m away before."""
+    places = along((1.0, 0.5), (3.5, 0.5), (3.5, -0.5), (1.0, -0.5))
+    known = free(drive(np.concatenate((HALL, WALL)), places), 1.0, 0.5)
+    assert all(known[:25])  # on the node's side
+    assert not any(known[-20:])
+
+
+@pytest.mark.parametrize("thickness", [0.1, 0.3])
+@pytest.mark.parametrize("degrees", [180, 270, 360])
+def test_a_way_is_never_known_through_a_wall(degrees, thickness):
+    random = np.random.default_rng(degrees)
+    walls = np.concatenate((HALL, rectangle(-6, -thickness / 2, 3, thickness / 2)))
+    for _ in range(20):
+        y, x = random.uniform(0.3, 0.6) + thickness / 2, random.uniform(-4, 2)
+        places = along((x, y), (3.6, y), (3.6, -y), (x, -y), (-4.5, -y))
+        scans = drive(walls, places, fan(degrees + 1, degrees))
+        known = np.array(free(scans, x, y))
+        other_side = np.array([place[1] < 0 and place[0] < 2.4 for place in places])
+        assert not known[other_side].any()
+
+
+def test_a_jump_of_the_pose_forgets_the_views_before_it():
+    there, far = along((-2, 1), (0, 1)), along((-4, -3), (-3, -3))
+    scans = drive(HALL, [*there, *far, (0.0, 1.0, EAST)], fan(61, 60))
+    assert free(scans, -1.0, 1.0)[len(there) - 1]
+    assert not free(scans, -1.0, 1.0)[-1]
+
+
+def test_scanners_remember_apart():
+    ways = FreeWays()
+    scans = drive(HALL, along((-2, 1), (0, 1)), fan(61, 60))
+    ways.free(scans, np.tile([-1.0, 1.0], (len(scans), 1)))
+    last = scans.rows(slice(-1, None))
+    assert ways.free(last, np.array([[-1.0, 1.0]]))[0]
+    other = sweeps(last.ranges, last.bearings, last.map_from_laser_first)
+    object.__setattr__(other, "scanner", 1)
+    assert not ways.free(other, np.array([[-1.0, 1.0]]))[0]
+
+
+def test_no_node_and_no_scan_give_no_way():
+    scan = drive(HALL, [(0.0, 1.0, EAST)])
+    assert free(scan, math.nan, math.nan) == [False]
+    assert free(scan.rows(slice(0, 0)), 0.0, 0.0) == []
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_scan_of_missing_beams_is_taken(value):
+    scan = sweeps([np.full(181, value)], NARROW, [pose(0, 0)])
+    assert free(scan, 0.9, 0.0) == [value == math.inf]
+
+
+def test_a_single_beam_and_a_laser_on_edge_are_taken():
+    assert free(sweeps([[2.0]], [0.0], [pose(0, 0)]), -0.9, 0.0) == [False]
+    on_edge = np.array([[[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0]]])
+    assert free(sweeps([np.full(181, 3.0)], NARROW, on_edge), 0.5, 0.5) == [False]
+
+
+TURNING = drive(
+    np.concatenate((HALL, WALL)), along((-1.0, 0.6), (3.6, 0.6), (3.6, -0.6), (0.0, -0.6), step=0.15)
+)
+TOWARDS = (
+    np.random.default_rng(2).uniform(-0.9, 0.9, (len(TURNING), 2)) + TURNING.map_from_laser_first[:, :2, 3]
+)
+WHOLE = FreeWays().free(TURNING, TOWARDS)
+
+
+@given(st.sets(st.integers(1, len(TURNING) - 1), max_size=12))
+@settings(max_examples=25)
+def test_what_is_known_does_not_depend_on_blocks(cuts):
+    ways, borders = FreeWays(), [0, *sorted(cuts), len(TURNING)]
+    parts = [slice(*part) for part in pairwise(borders)]
+    known = np.concatenate([ways.free(TURNING.rows(part), TOWARDS[part]) for part in parts])
+    np.testing.assert_array_equal(known, WHOLE)
+    assert 0.2 < WHOLE.mean() < 0.99

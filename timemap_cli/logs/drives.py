@@ -1,0 +1,86 @@
+"""Which recordings are parts of one drive and share their transforms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from timemap_cli.logs.batches import TransformBatch
+from timemap_cli.logs.history import NO_PARENT, History, usable
+from timemap_cli.logs.interleave import Recorded, joined
+from timemap_cli.logs.scan_window import WINDOW_NS
+
+Drive = tuple[int, ...]  # indices of recordings
+Edge = tuple[str, str]  # parent, child
+
+# Two recorders of one robot may have missed different messages, and the robot moves in between.
+OTHER_PLACE_M = 0.5
+OTHER_TURN_RAD = math.radians(30)
+OTHER_SHARE = 0.1  # of the stamps that both cover
+
+
+def drives(
+    recordings: Sequence[Recorded], transforms: Sequence[Sequence[TransformBatch]]
+) -> tuple[Drive, ...]:
+    """Recordings that overlap or follow within 10 s, but not those that tell other poses for the same stamps.
+
+    The latter are two robots, or two runs of a simulation whose clock began anew. ``transforms`` are a
+    sample of each recording's. The recordings stand in the order of their starts, and so do the drives.
+    """
+    found: list[list[int]] = []
+    for group in joined(recordings, WINDOW_NS):
+        apart: list[list[int]] = []
+        edges = {index: _moving(transforms[index]) for index in group} if len(group) > 1 else {}
+        for index in group:
+            fitting = (d for d in apart if not any(_contradict(edges[index], edges[other]) for other in d))
+            drive = next(fitting, None)
+            if drive is None:
+                apart.append([index])
+            else:
+                drive.append(index)
+        found += apart
+    return tuple(map(tuple, found))
+
+
+def _moving(batches: Sequence[TransformBatch]) -> dict[Edge, TransformBatch]:
+    """The moving edges, each with all its samples that are poses."""
+    parts: dict[Edge, list[TransformBatch]] = {}
+    for batch in batches:
+        if not batch.static:
+            parts.setdefault((batch.parent, batch.child), []).append(batch)
+    return {edge: whole for edge, some in parts.items() if len((whole := _usable(some)).stamps_ns)}
+
+
+def _usable(parts: Sequence[TransformBatch]) -> TransformBatch:
+    first = parts[0]
+    translation = np.concatenate([part.translation for part in parts])
+    good, rotation = usable(translation, np.concatenate([part.rotation for part in parts]))
+    stamps_ns = np.concatenate([part.stamps_ns for part in parts])[good]
+    return TransformBatch(
+        first.parent, first.child, False, stamps_ns, stamps_ns, translation[good], rotation[good]
+    )
+
+
+def _contradict(some: Mapping[Edge, TransformBatch], others: Mapping[Edge, TransformBatch]) -> bool:
+    """Whether an edge that both have is in other places at the stamps that both cover."""
+    return any(_differ(batch, others[edge]) for edge, batch in some.items() if edge in others)
+
+
+def _differ(one: TransformBatch, other: TransformBatch) -> bool:
+    if one.stamps_ns.min() > other.stamps_ns.max() or other.stamps_ns.min() > one.stamps_ns.max():
+        return False
+    samples = []
+    for batch in (other, one):
+        history = History()
+        history.add(batch.stamps_ns, batch.translation, batch.rotation, 0)
+        samples.append(history.sample(one.stamps_ns))
+    (known, there), (_, here) = samples
+    both = known != NO_PARENT
+    if not both.any():
+        return False
+    far = np.linalg.norm(there[both, :, 3] - here[both, :, 3], axis=1) > OTHER_PLACE_M
+    # The trace of a turn by an angle is 1 + 2 cos.
+    trace = (there[both, :, :3] * here[both, :, :3]).sum(axis=(1, 2))
+    return bool((far | (trace < 1 + 2 * math.cos(OTHER_TURN_RAD))).mean() > OTHER_SHARE)

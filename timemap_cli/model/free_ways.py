@@ -1,0 +1,180 @@
+"""Whether the straight way from the laser to its node is known to be free of walls.
+
+A robot that sees 180 degrees seldom sees the node that it stands beside. But a near node may as well stand on the
+other side of a wall. The way is free where the robot stands, where this scan or one of those shortly before it saw
+past, and where the robot itself has just driven.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from timemap_cli.model.angles import quarter_turns
+from timemap_cli.model.sweeps import Sweeps
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+
+ROBOT_RADIUS = 0.25  # [m] so far round a place where the laser was there is no wall
+KEPT_VIEWS = 16  # so many earlier scans are looked at ...
+KEPT_TRAVEL = 0.2  # [m] ... each so far from the one before it ...
+KEPT_TURN = math.radians(30)  # ... or turned by so much
+LONGEST_MOVE = 2.0  # [m] between two scans; more is a jump of the pose, or a gap in the recording
+
+_STEPS = 24  # of a way
+_CELL = math.radians(2)  # of a view; a narrower gap is not seen through
+_WIDEST_SPACING = math.radians(5)  # of beams between which nothing is missed
+
+
+@dataclass(frozen=True, slots=True)
+class _Views:
+    """How far k scans saw, from where."""
+
+    origin: Floats  # (k, 2) [m, map frame]
+    along: Floats  # (k, 2, 2) the laser's x and y axes laid flat, in columns
+    depth: npt.NDArray[np.float32]  # (k, cells + 1) [m] nearest evidence of each cell of beams; -1: none
+
+    def rows(self, rows: slice | Ints) -> "_Views":
+        return _Views(self.origin[rows], self.along[rows], self.depth[rows])
+
+    def then(self, later: "_Views") -> "_Views":
+        return _Views(
+            np.concatenate((self.origin, later.origin)),
+            np.concatenate((self.along, later.along)),
+            np.concatenate((self.depth, later.depth)),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Fan:
+    """A scanner's beams, a few neighbours to a cell."""
+
+    first: float  # [rad]
+    step: float  # [rad] from beam to beam, negative if clockwise
+    beams: int
+    group: int  # beams to a cell
+
+    @classmethod
+    def of(cls, bearings: Floats) -> "_Fan":
+        step = float(bearings[-1] - bearings[0]) / max(1, len(bearings) - 1) or _CELL
+        return cls(float(bearings[0]), step, len(bearings), max(1, round(_CELL / abs(step))))
+
+    def depths(self, sweeps: Sweeps) -> npt.NDArray[np.float32]:
+        """Nearest evidence (n, cells + 1) [m] of each cell; -1 if there is none, as beside the field of view."""
+        starts = np.arange(0, self.beams, self.group)
+        depth = np.full((len(sweeps), len(starts) + 1), -1, np.float32)
+        nearest = np.fmin.reduceat(sweeps.ranges, starts, axis=1)
+        np.minimum(nearest, np.float32(sweeps.clear_range), out=nearest)
+        depth[:, :-1] = np.where(np.isnan(nearest), np.float32(-1), nearest)
+        return depth
+
+    def cells_towards(self, x: Floats, y: Floats) -> Ints:
+        """Cell of each direction in the laser's plane; the last one beside the field of view."""
+        bearing = quarter_turns(x.astype(np.float32), y.astype(np.float32)) * np.float64(math.pi / 2)
+        turn = math.tau / abs(self.step)  # in beams
+        place = (bearing - self.first) / self.step + 0.5
+        place -= np.floor(place / turn) * turn
+        beside = -(-self.beams // self.group)
+        off_beam = np.abs(place - np.floor(place) - 0.5) * abs(self.step)
+        looks_there = (place < self.beams) & (off_beam <= _WIDEST_SPACING / 2)
+        cell = np.where(looks_there, np.floor(place / self.group), beside)
+        return np.nan_to_num(cell, nan=beside).astype(np.int64)
+
+
+@dataclass(frozen=True, slots=True)
+class _Trail:
+    """What a scanner saw on its way here."""
+
+    kept: _Views
+    x: float  # [m] where the newest scan was taken
+    y: float
+    stamp_ns: int
+
+
+class FreeWays:
+    """Remembers, for each scanner, the views of the last few metres."""
+
+    def __init__(self) -> None:
+        self._trails: dict[int, _Trail] = {}
+
+    def free(self, sweeps: Sweeps, centres: Floats) -> Bools:
+        """Whether the way from the laser to the node centre (n, 2) [m, map frame] is free, for each of n scans (n,).
+
+        Blocks must come in stamp order.
+        """
+        fan = _Fan.of(sweeps.bearings)
+        views = _Views(*_placed(sweeps), fan.depths(sweeps))
+        kept, begin, end = self._keep(sweeps, views)
+        way = _points(views.origin, centres)
+        passed = _inside(way, views, fan)
+        doubtful = np.flatnonzero(~passed.all(axis=1))
+        for back in range(1, KEPT_VIEWS + 1):
+            doubtful = doubtful[~passed[doubtful].all(axis=1) & (end[doubtful] - back >= begin[doubtful])]
+            if not len(doubtful):
+                break
+            passed[doubtful] |= _inside(way[doubtful], kept.rows(end[doubtful] - back), fan)
+        return np.asarray(passed.all(axis=1))
+
+    def _keep(self, sweeps: Sweeps, views: _Views) -> tuple[_Views, Ints, Ints]:
+        """The views kept before and in this block, and which of them each scan may look at: [begin, end) (n,)."""
+        trail = self._trails.get(sweeps.scanner)
+        if trail is None or trail.kept.depth.shape[1] != views.depth.shape[1]:
+            trail = _Trail(views.rows(slice(0, 0)), math.inf, math.inf, 0)
+        chosen: list[int] = []
+        begin, end = np.zeros(len(sweeps), np.int64), np.zeros(len(sweeps), np.int64)
+        first, before = 0, len(trail.kept.origin)
+        x, y, stamp_ns = trail.x, trail.y, trail.stamp_ns
+        last = (*trail.kept.origin[-1], *trail.kept.along[-1, :, 0]) if before else None
+        rows = np.column_stack((views.origin, views.along[:, :, 0])).tolist()
+        for i, (row, now_ns) in enumerate(zip(rows, sweeps.stamps_ns.tolist(), strict=True)):
+            if now_ns < stamp_ns or not _apart(x, y, row) <= LONGEST_MOVE:
+                first, last = before + len(chosen), None
+            begin[i], end[i] = first, before + len(chosen)
+            if last is None or _is_another_view(last, row):
+                chosen.append(i)
+                last = tuple(row)
+            x, y, stamp_ns = row[0], row[1], now_ns
+        kept = trail.kept.then(views.rows(np.array(chosen, np.int64)))
+        stays = slice(max(first, len(kept.origin) - KEPT_VIEWS), None)
+        self._trails[sweeps.scanner] = _Trail(kept.rows(stays), x, y, stamp_ns)
+        return kept, begin, end
+
+
+def _placed(sweeps: Sweeps) -> tuple[Floats, Floats]:
+    """Where the lasers are (n, 2) [m, map frame], and their x and y axes laid flat (n, 2, 2), in columns."""
+    pose = sweeps.map_from_laser_first
+    return pose[:, :2, 3], pose[:, :2, :2]
+
+
+def _apart(x: float, y: float, row: list[float]) -> float:
+    return math.sqrt((row[0] - x) ** 2 + (row[1] - y) ** 2)
+
+
+def _is_another_view(last: tuple[float, ...], row: list[float]) -> bool:
+    turned = last[2] * row[2] + last[3] * row[3] < math.cos(KEPT_TURN)
+    return turned or _apart(last[0], last[1], row) >= KEPT_TRAVEL
+
+
+def _points(origin: Floats, centres: Floats) -> Floats:
+    """Points (n, steps + 1, 2) [m, map frame] from the laser to the node."""
+    part = np.arange(_STEPS + 1)[:, None] / _STEPS
+    return np.asarray(origin[:, None] + part * (centres - origin)[:, None])
+
+
+def _inside(way: Floats, views: _Views, fan: _Fan) -> Bools:
+    """Steps (n, steps) of each way whose two ends one view holds: no wall fits in between.
+
+    A view holds what it saw free, and the place of the robot.
+    """
+    dx, dy = (way[:, :, axis] - views.origin[:, None, axis] for axis in (0, 1))
+    holds = dx * dx + dy * dy <= ROBOT_RADIUS**2
+    (xx, xy), (yx, yy) = views.along.transpose(1, 2, 0)[..., None]
+    upright = xx * yy - xy * yx
+    with np.errstate(divide="ignore", invalid="ignore"):  # a laser whose plane is vertical sees no way
+        u, v = (yy * dx - xy * dy) / upright, (xx * dy - yx * dx) / upright
+        cell = fan.cells_towards(u, v)
+        holds |= np.take_along_axis(views.depth, cell, axis=1) > np.sqrt(u * u + v * v)
+    return np.asarray(holds[:, :-1] & holds[:, 1:])
