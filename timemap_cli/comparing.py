@@ -25,6 +25,9 @@ class Comparison:
     nodes: Sequence[Node]
     before: ComparedSide
     after: ComparedSide
+    without_partner: tuple[int, int] | None = (
+        None  # of two results: nodes of the one, the other, that it alone has
+    )
     warnings: tuple[str, ...] = ()
     hint: str | None = None  # what to try, where nothing was compared or nothing found
 
@@ -33,7 +36,7 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
     """The slower of two levels against the faster one, at a time, by default the result's end."""
     with ResultReader(result) as reader:
         for level in levels:
-            _require_level(reader, result, level)
+            require_level(reader, result, level)
         if levels[0] == levels[1]:
             raise UsageError(f"level {levels[0]} cannot differ from itself", hint=_level_pair(result, reader))
         slower, faster = sorted(levels, key=reader.levels.index, reverse=True)
@@ -45,20 +48,20 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
         hint = (
             None if difference.changes else f"{_two_times(reader, result, faster)}\ntimemap changes {result}"
         )
-        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings, hint)
+        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings=warnings, hint=hint)
 
 
 def compare_times(result: Path, level: str, times: tuple[str, str]) -> Comparison:
     """The earlier of two times of a level against the later one: each node's newest estimates until then."""
     with ResultReader(result) as reader:
-        _require_level(reader, result, level)
+        require_level(reader, result, level)
         earlier_ns, later_ns = sorted(_time_within(reader, result, time) for time in times)
         before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
         difference = compare(reader.nodes, before, after, radius=reader.radius, only_renewed=True)
         old_side, new_side = (ComparedSide(str(result), level, ns) for ns in (earlier_ns, later_ns))
         warnings = _beyond(reader, result, later_ns)
         hint = None if difference.nodes else _two_times(reader, result, level)
-        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings, hint)
+        return Comparison(difference, tuple(reader.nodes), old_side, new_side, warnings=warnings, hint=hint)
 
 
 def compare_results(one: Path, other: Path, level: str) -> Comparison:
@@ -66,11 +69,12 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
     with ResultReader(one) as first, ResultReader(other) as second:
         pairs = [(one, first), (other, second)]
         for path, reader in pairs:
-            _require_level(reader, path, level)
+            require_level(reader, path, level)
         (old_path, old), (new_path, new) = sorted(pairs, key=lambda pair: pair[1].end_ns)
         _require_same_map(old_path, old, new_path, new)
         before = old.estimates(level, None)
-        after = _renumbered(new.estimates(level, None), _shared_nodes(old, new))
+        shared = _shared_nodes(old, new)
+        after = _renumbered(new.estimates(level, None), shared)
         if not after:
             raise UsageError(
                 f"{old_path} and {new_path} share no nodes",
@@ -81,7 +85,8 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
             ComparedSide(str(path), level, reader.end_ns)
             for path, reader in ((old_path, old), (new_path, new))
         )
-        return Comparison(difference, tuple(old.nodes), old_side, new_side)
+        alone = len(old.nodes) - len(set(shared.values())), len(new.nodes) - len(shared)
+        return Comparison(difference, tuple(old.nodes), old_side, new_side, alone)
 
 
 def newest_result(folder: Path) -> Path:
@@ -92,7 +97,8 @@ def newest_result(folder: Path) -> Path:
     return found[-1]
 
 
-def _require_level(reader: ResultReader, result: Path, level: str) -> None:
+def require_level(reader: ResultReader, result: Path, level: str) -> None:
+    """UsageError for a level that a result does not have."""
     if level not in reader.levels:
         raise UsageError(
             f"{result} has no level '{level}', only {', '.join(reader.levels)}",

@@ -29,7 +29,19 @@ def room(level, stamp_ns, *, box: bool, node: int = 0) -> Estimate:
     return Estimate(node, level, stamp_ns, ranges, sure, sure, samples, status, last_seen_ns)
 
 
-def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", radius=10.0, ends=()) -> Path:
+def write(
+    path: Path,
+    boxes,
+    nodes=(NODE,),
+    *,
+    levels=LEVELS,
+    map_frame="map",
+    radius=10.0,
+    ends=(),
+    metadata=None,
+    report=None,
+    changes=NO_CHANGES,
+) -> Path:
     """Write a result; `boxes` lists (seconds from START, {level: whether it sees the box}).
 
     Recordings end at those of these seconds that are in `ends`.
@@ -49,7 +61,7 @@ def write(path: Path, boxes, nodes=(NODE,), *, levels=LEVELS, map_frame="map", r
                     for lv in levels
                 }
                 writer.write_maps(latest, nodes, stamp_ns)
-        writer.finish({"nodes": str(len(nodes))}, "seed: 0\n", {}, NO_CHANGES)
+        writer.finish({"nodes": str(len(nodes))} | (metadata or {}), "seed: 0\n", report or {}, changes)
     return path
 
 

@@ -175,6 +175,50 @@ def test_exit_code_tells_whether_there_are_differences(result):
     assert timemap("diff", result, "--level", "long", "mid").code == 0
 
 
+# The box is a chord 2 m away and 30 degrees wide: 1.04 m across; the wall behind it stands at 4 m.
+@pytest.mark.parametrize(
+    ("wanted", "code"),
+    [
+        (("--min-size", "0.8"), 4),
+        (("--min-size", "1.3"), 0),
+        (("--min-shift", "1.9"), 4),
+        (("--min-shift", "2.1"), 0),
+        (("--min-size", "0.8", "--min-shift", "2.1"), 0),
+    ],
+)
+def test_exit_code_tells_of_the_changes_that_are_large_enough(result, wanted, code):
+    ran = timemap("diff", result, "--level", "long", "mid", "--exit-code", *wanted)
+    assert ran.code == code
+    assert ("1 smaller change left out." in ran.out) == (code == 0)
+    summary = document(result, "--level", "long", "mid", *wanted)["summary"]
+    assert (summary["changes"], summary["small"]) == ((1, 0) if code else (0, 1))
+
+
+def test_a_negative_least_size_is_refused(result):
+    ran = timemap("diff", result, "--level", "long", "mid", "--min-size", "-1")
+    assert ran.code == 2
+    assert "--min-size" in ran.err
+
+
+def test_nodes_that_the_other_result_does_not_have_are_told(tmp_path):
+    one = write(tmp_path / "one.mcap", [(0, all_levels(True))], [Node(50.0, 0.0), NODE])
+    two = write(tmp_path / "two.mcap", [(50, all_levels(False))], [NODE, Node(90.0, 0.0), Node(95.0, 0.0)])
+    ran = timemap("diff", two, one, "--level", "long")
+    assert f"No partner in the other result: 1 node of {one} and 2 nodes of {two}." in ran.out
+    assert document(two, one, "--level", "long")["summary"]["without_partner"] == {"from": 1, "to": 2}
+
+
+def test_results_with_the_same_nodes_leave_none_without_partner(tmp_path):
+    one = write(tmp_path / "one.mcap", [(0, all_levels(True))])
+    two = write(tmp_path / "two.mcap", [(50, all_levels(False))])
+    assert "No partner" not in timemap("diff", one, two, "--level", "long").out
+    assert document(one, two, "--level", "long")["summary"]["without_partner"] == {"from": 0, "to": 0}
+
+
+def test_levels_of_one_result_have_no_partners_to_tell_of(result):
+    assert "without_partner" not in document(result, "--level", "long", "mid")["summary"]
+
+
 def proposals(ran):
     return [line.removeprefix("  try: ") for line in ran.err.splitlines() if line.startswith("  try: ")]
 

@@ -62,6 +62,7 @@ def test_document_has_the_fields_that_programs_read():
         ],
         "summary": {
             "changes": 1,
+            "small": 0,
             "appeared": 0,
             "vanished": 1,
             "moved": 0,

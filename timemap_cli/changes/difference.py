@@ -1,6 +1,6 @@
 """What a comparison of two estimates says."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from math import hypot
 
@@ -66,6 +66,16 @@ class Change:
         x_min, y_min, x_max, y_max = self.bounds
         return hypot(x_max - x_min, y_max - y_min)
 
+    @property
+    def shift_m(self) -> float:
+        """How far a moved thing went [m]; of another one, the largest step of range among its sectors.
+
+        A range that was clear, or became it, is a step without bound.
+        """
+        if self.moved_from is not None:
+            return hypot(self.x - self.moved_from[0], self.y - self.moved_from[1])
+        return max(abs(sector.range_to_m - sector.range_from_m) for sector in self.sectors)
+
 
 @dataclass(frozen=True, slots=True)
 class ComparedNode:
@@ -84,6 +94,7 @@ class Difference:
     nodes: tuple[ComparedNode, ...]  # by number
     silent_nodes: tuple[int, ...]  # known to one side only, or not seen again: they say nothing
     angle_bins: int  # of every ring; 0 where no node was compared
+    small: int = 0  # changes left out by `at_least`
 
     @property
     def compared_bins(self) -> int:
@@ -98,3 +109,8 @@ class Difference:
     def count(self, kind: Kind) -> int:
         """How many changes are of this kind."""
         return sum(change.kind is kind for change in self.changes)
+
+    def at_least(self, size_m: float, shift_m: float) -> "Difference":
+        """Only the changes of at least this size and shift [m]; what was compared, and its counts, stay."""
+        kept = tuple(one for one in self.changes if one.size_m >= size_m and one.shift_m >= shift_m)
+        return replace(self, changes=kept, small=self.small + len(self.changes) - len(kept))

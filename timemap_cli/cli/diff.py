@@ -1,11 +1,12 @@
 """`timemap diff`: what differs between two levels, two times or two results."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from timemap_cli.cli.level_words import spread_levels
+from timemap_cli.cli.level_words import LevelPairs
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
@@ -19,13 +20,6 @@ _TWO_TIMES = "timemap diff --level mid --between 2024-05-01T18:00:00Z end"
 _TWO_RESULTS = "timemap diff RESULT OTHER --level long"
 
 
-class _LevelPairs(click.Command):
-    """A command whose --level takes a second word if that is a level's name."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        return super().parse_args(ctx, spread_levels(args))
-
-
 def _two_times(
     _context: click.Context, _option: click.Parameter, times: tuple[str, str] | None
 ) -> tuple[str, str] | None:
@@ -35,7 +29,7 @@ def _two_times(
     return times
 
 
-@click.command(cls=_LevelPairs, short_help="what differs between two levels, two times or two results")
+@click.command(cls=LevelPairs, short_help="what differs between two levels, two times or two results")
 @click.argument("results", nargs=-1, type=NAMED_PATH, metavar="[RESULT] [OTHER]")
 @click.option(
     "--level", "levels", multiple=True, metavar="LEVEL [LEVEL]", help="Two levels, or the one to look at."
@@ -48,11 +42,20 @@ def _two_times(
     callback=_two_times,
     help="Compare two times of one level.",
 )
+@click.option("--min-size", type=click.FloatRange(0), default=0.0, metavar="M", help="Least diagonal [m].")
+@click.option(
+    "--min-shift",
+    type=click.FloatRange(0),
+    default=0.0,
+    metavar="M",
+    help="Least way of what moved; of others the least step between the ranges before and after [m]. "
+    "What was or became clear passes.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON (schema timemap.diff/1).")
 @click.option(
     "--exit-code",
     is_flag=True,
-    help="Exit with 4 if there are differences, with 2 if nothing could be compared.",
+    help="Exit with 4 if there are differences (of --min-size and --min-shift), with 2 if nothing could be compared.",
 )
 @click.pass_obj
 def diff(
@@ -61,6 +64,8 @@ def diff(
     levels: tuple[str, ...],
     at: str | None,
     between: tuple[str, str] | None,
+    min_size: float,
+    min_shift: float,
     as_json: bool,
     exit_code: bool,
 ) -> ExitCode:
@@ -82,6 +87,7 @@ def diff(
         results = (newest_result(Path()),)
         terminal.note(f"using {results[0]}, the newest result in this folder")
     comparison = _compare(results, levels, at, between)
+    comparison = replace(comparison, difference=comparison.difference.at_least(min_size, min_shift))
     _print(terminal, comparison, as_json)
     return _exit_code(comparison) if exit_code else ExitCode.DONE
 
@@ -135,9 +141,11 @@ def _print(terminal: Terminal, found: "Comparison", as_json: bool) -> None:
     from timemap_cli.reports.diff_text import diff_text
 
     if as_json:
-        terminal.result(diff_json(found.difference, found.nodes, found.before, found.after))
+        terminal.result(
+            diff_json(found.difference, found.nodes, found.before, found.after, found.without_partner)
+        )
     else:
-        terminal.result(diff_text(found.difference, found.before, found.after))
+        terminal.result(diff_text(found.difference, found.before, found.after, found.without_partner))
     for warning in found.warnings:
         terminal.warn(warning)
     terminal.hint(found.hint)

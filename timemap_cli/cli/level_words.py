@@ -3,6 +3,8 @@
 import re
 from collections.abc import Sequence
 
+import click
+
 LEVEL_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
@@ -26,3 +28,11 @@ def spread_levels(args: Sequence[str]) -> list[str]:
         if rest and LEVEL_NAME.fullmatch(rest[0]):
             spread += ["--level", rest.pop(0)]
     return spread
+
+
+class LevelPairs(click.Command):
+    """A command whose --level takes a second word if that is a level's name."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the arguments, with each pair of levels spread out."""
+        return super().parse_args(ctx, spread_levels(args))

@@ -10,6 +10,7 @@ from timemap_cli.cli.changes import changes
 from timemap_cli.cli.config import config
 from timemap_cli.cli.diff import diff
 from timemap_cli.cli.info import info
+from timemap_cli.cli.plot import plot
 from timemap_cli.cli.replay import replay
 from timemap_cli.cli.report import report
 from timemap_cli.cli.terminal import Terminal
@@ -30,7 +31,7 @@ def timemap() -> None:
     """
 
 
-for _command in (info, replay, changes, diff, report, config):
+for _command in (info, replay, changes, diff, report, plot, config):
     timemap.add_command(_command)
 
 

@@ -4,16 +4,17 @@ from pathlib import Path
 
 import click
 
+from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode
 
 
 @click.command(short_help="one page to look at: the map over time, the changes, what they rest on")
-@click.argument("result", required=False, type=click.Path(path_type=Path))
+@click.argument("result", required=False, type=NAMED_PATH)
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=NAMED_PATH,
     metavar="PAGE.html",
     help="Page. [default: RESULT's name with .html, here]",
 )
@@ -34,14 +35,21 @@ def report(terminal: Terminal, /, result: Path | None, output: Path | None, forc
     if result is None:
         result = newest_result(Path())
         terminal.note(f"using {result}, the newest result in this folder")
-    output = output or Path(result.name.removesuffix(".mcap").removesuffix(".timemap") + ".html")
-    with ResultReader(result) as reader:
-        text = page(result.name.removesuffix(".mcap").removesuffix(".timemap"), page_data(reader))
-    file = AtomicFile(output, force=force)
-    try:
-        file.write(text.encode())
+    title = result.name.removesuffix(".mcap").removesuffix(".timemap")
+    output = output or Path(title + ".html")
+    with (
+        ResultReader(result) as reader,
+        AtomicFile(output, force=force, may_replace=_is_page, replaced="a page") as file,
+    ):
+        file.write(page(title, page_data(reader)).encode())
         file.commit()
-    finally:
-        file.discard()
     terminal.result(str(output))
     return ExitCode.DONE
+
+
+def _is_page(path: Path) -> bool:
+    """Whether a file may give way to a page: only HTML may."""
+    if not path.is_file():  # opening a pipe would wait for somebody to write
+        return False
+    with path.open("rb") as file:
+        return file.read(15).lower() == b"<!doctype html>"

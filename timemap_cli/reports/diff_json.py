@@ -11,18 +11,29 @@ from timemap_cli.reports.sides import ComparedSide
 _DIGITS = 4  # of a metre, a degree or a share: finer than any scanner
 
 
-def diff_json(difference: Difference, nodes: Sequence[Node], old: ComparedSide, new: ComparedSide) -> str:
+def diff_json(
+    difference: Difference,
+    nodes: Sequence[Node],
+    old: ComparedSide,
+    new: ComparedSide,
+    without_partner: tuple[int, int] | None = None,
+) -> str:
     """The document as text, one line, without NaN or Infinity.
 
     Times are strings of nanoseconds, lengths metres in the map frame, bearings degrees; a sector runs
     counter-clockwise from start_deg (0 <= start < 360) to stop_deg (0 < stop <= 360) and passes 0 where the
-    stop is not beyond the start. A range is a number or "clear".
+    stop is not beyond the start. A range is a number or "clear". `without_partner` counts the nodes of "from" and
+    of "to" that the other result does not have; None where both sides are of one result.
     """
-    return json.dumps(diff_document(difference, nodes, old, new), allow_nan=False)
+    return json.dumps(diff_document(difference, nodes, old, new, without_partner), allow_nan=False)
 
 
 def diff_document(
-    difference: Difference, nodes: Sequence[Node], old: ComparedSide, new: ComparedSide
+    difference: Difference,
+    nodes: Sequence[Node],
+    old: ComparedSide,
+    new: ComparedSide,
+    without_partner: tuple[int, int] | None = None,
 ) -> dict[str, object]:
     """The document as values that JSON knows."""
     return {
@@ -31,7 +42,7 @@ def diff_document(
         "to": _side(new),
         "changes": [_change(change, difference.angle_bins) for change in difference.changes],
         "nodes": [_node(compared, nodes[compared.node]) for compared in difference.nodes],
-        "summary": _summary(difference),
+        "summary": _summary(difference) | _alone(without_partner),
     }
 
 
@@ -39,12 +50,19 @@ def _summary(difference: Difference) -> dict[str, object]:
     counts: dict[str, object] = {kind.value: difference.count(kind) for kind in Kind}
     return counts | {
         "changes": len(difference.changes),
+        "small": difference.small,
         "compared_nodes": len(difference.nodes),
         "silent_nodes": len(difference.silent_nodes),
         "compared_bins": difference.compared_bins,
         "changed_bins": difference.changed_bins,
         "angle_bins": difference.angle_bins or None,
     }
+
+
+def _alone(without_partner: tuple[int, int] | None) -> dict[str, object]:
+    if without_partner is None:
+        return {}
+    return {"without_partner": dict(zip(("from", "to"), without_partner, strict=True))}
 
 
 def _side(side: ComparedSide) -> dict[str, object]:

@@ -12,13 +12,28 @@ _NODES_SHOWN = 4  # more do not help to find the place, and the line stays withi
 _HEADINGS = ("what", "x, y [m]", "size [m]", "nodes", "range at first [m]", "support", "")
 
 
-def diff_text(difference: Difference, old: ComparedSide, new: ComparedSide) -> str:
+def diff_text(
+    difference: Difference,
+    old: ComparedSide,
+    new: ComparedSide,
+    without_partner: tuple[int, int] | None = None,
+) -> str:
     """What was compared, how much of it, and a line per change, the largest first.
 
     Each line lists the nodes that saw the change, the one that saw it widest first, and the range from there
-    before and after. Ends without a newline.
+    before and after. `without_partner` counts the nodes of the old and of the new side's result that the other
+    does not have. Ends without a newline.
     """
     lines = [*_sides(old, new), "", _summary(difference)]
+    if difference.small:
+        lines.append(f"{plural(difference.small, 'smaller change')} left out.")
+    if without_partner and any(without_partner):
+        alone = " and ".join(
+            f"{plural(count, 'node')} of {side.result}"
+            for count, side in zip(without_partner, (old, new), strict=True)
+            if count
+        )
+        lines.append(f"No partner in the other result: {alone}.")
     if difference.changes:
         rows = [_HEADINGS, *(_row(change, difference.angle_bins) for change in difference.changes)]
         lines += ["", *table(rows)]

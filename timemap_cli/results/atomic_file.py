@@ -18,16 +18,23 @@ class AtomicFile:
     `commit`, by an exception or Ctrl-C too, removes it. A symbolic link is followed, as the shell does.
 
     Raises UsageError if the path exists and `force` is not given, if it is a folder or nothing that
-    `may_replace` allows, or if its folder is missing; TimemapError where the system refuses to write.
+    `may_replace` allows (`replaced` says what that is), or if its folder is missing; TimemapError where the
+    system refuses to write.
     """
 
     def __init__(
-        self, path: Path, *, force: bool = False, may_replace: Callable[[Path], bool] | None = None
+        self,
+        path: Path,
+        *,
+        force: bool = False,
+        may_replace: Callable[[Path], bool] | None = None,
+        replaced: str = "a result of timemap",
     ) -> None:
         self._named = path
         self._path = Path(os.path.realpath(path))
         self._force = force
         self._may_replace = may_replace
+        self._replaced = replaced
         self._refuse_existing()
         folder = self._path.parent
         if not folder.is_dir():
@@ -82,7 +89,7 @@ class AtomicFile:
             return
         if self._may_replace is not None and not self._may_replace(self._path):
             raise UsageError(
-                f"{self._named} exists and is not a result of timemap: it is not replaced",
+                f"{self._named} exists and is not {self._replaced}: it is not replaced",
                 hint="-o FILE writes somewhere else",
             )
         if not self._force:

@@ -14,6 +14,7 @@ const byId = (id) => document.getElementById(id);
 const milliseconds = (ns) => Number(ns.slice(0, -6) || "0");
 const iso = (ms) => new Date(ms).toISOString().replace("T", " ");
 const readable = (ns) => iso(milliseconds(ns)).slice(0, 19);
+const day = (ns) => readable(ns).slice(0, 16);
 const colourOf = (level) => LEVEL_COLOURS[DATA.levels.indexOf(level) % LEVEL_COLOURS.length];
 const holdsAt = (event, ns) => event.episodes.some(
   (one) => BigInt(one.since_ns) <= ns && (one.until_ns === null || ns < BigInt(one.until_ns)));
@@ -72,6 +73,17 @@ function outlines(events) {
   return out;
 }
 
+// A number stands on that side of its mark that looks away from the nearest other one.
+function labelSides(marks) {
+  const around = ["middle right", "top right", "top center", "top left", "middle left", "bottom left", "bottom center", "bottom right"];
+  return marks.map((mark) => {
+    const offsets = marks.filter((one) => one !== mark).map((one) => [mark.x - one.x, mark.y - one.y]);
+    if (!offsets.length) return "top center";
+    const [dx, dy] = offsets.reduce((best, one) => (Math.hypot(...one) < Math.hypot(...best) ? one : best));
+    return around[(Math.round(Math.atan2(dy, dx) / (Math.PI / 4)) + 8) % 8];
+  });
+}
+
 function planTraces() {
   const now = BigInt(DATA.times[state.step] ?? "0");
   const levels = [...DATA.levels].reverse().map((level) => ({
@@ -87,12 +99,13 @@ function planTraces() {
     type: "scatter", mode: "lines", name: kind, fill: "toself", fillcolor: colour + "55", line: { color: colour, width: 2 },
     hoverinfo: "skip", ...outlines(EVENTS.filter((e) => e.kind === kind && holdsAt(e, now))),
   }));
-  const marks = EVENTS.filter((e) => holdsAt(e, now));
+  const marks = EVENTS.filter((e) => holdsAt(e, now)), sides = labelSides(marks);
   const handles = {
     type: "scatter", mode: "markers+text", name: "events", x: marks.map((e) => e.x), y: marks.map((e) => e.y),
-    text: marks.map((e) => String(e.id)), textposition: "top center", textfont: { size: 12 },
+    text: marks.map((e) => String(e.id)), textposition: sides,
+    textfont: { size: 13, color: "#1c2530", shadow: "0 0 2px #fff, 0 0 3px #fff, 0 0 4px #fff, 0 0 4px #fff" },
     hovertext: marks.map((e) => `${e.id} ${e.kind} since ${readable(e.first_seen_ns)}`), hoverinfo: "text",
-    customdata: marks.map((e) => ({ event: e.id })), marker: { size: 9, color: marks.map((e) => KIND_COLOURS[e.kind]) },
+    customdata: marks.map((e) => ({ event: e.id })), marker: { size: 8, color: marks.map((e) => KIND_COLOURS[e.kind]), line: { width: 1, color: "#fff" } },
   };
   const chosen = EVENTS.filter((e) => e.id === state.event);
   const halo = {
@@ -102,12 +115,29 @@ function planTraces() {
 }
 
 // Times in which nothing was recorded are left out of the time line, if they are longer than an hour.
-function pauses() {
-  const times = DATA.times.map(milliseconds), found = [];
+function pauses(times) {
+  const found = [];
   for (let i = 1; i < times.length; i++) {
     if (times[i] - times[i - 1] > 3.6e6) found.push({ bounds: [iso(times[i - 1] + 6e4), iso(times[i] - 6e4)] });
   }
   return found;
+}
+
+// Where there are pauses, the line names the times at which recording went on, at most ten of them.
+function timeAxis() {
+  const times = DATA.times.map(milliseconds), first = times[0], last = times[times.length - 1];
+  const room = Math.max(1000, (last - first) * 0.01), left = pauses(times);
+  if (!left.length) return { type: "date", range: [iso(first - room), iso(last + room)], ...AXES };
+  const begins = times.filter((time, i) => i === 0 || time - times[i - 1] > 3.6e6);
+  const every = Math.ceil(begins.length / 10), told = begins.filter((_, i) => i % every === 0);
+  return { type: "date", range: [iso(first - 2e4), iso(last + 2e4)], rangebreaks: left, ...AXES, gridcolor: "#c5cdd8",
+    tickvals: told.map(iso), ticktext: told.map((time) => iso(time).slice(0, 16).replace(" ", "<br>")) };
+}
+
+// The numbers of the time line's rows, at most fifteen of them.
+function rowTicks() {
+  const every = Math.ceil(EVENTS.length / 15), rows = EVENTS.map((_, i) => i).filter((i) => i % every === 0);
+  return { tickvals: rows, ticktext: rows.map((i) => String(EVENTS[i].id)) };
 }
 
 const AXES = { zeroline: false, gridcolor: "#eef1f5" };
@@ -122,6 +152,8 @@ function drawPlan() {
 }
 
 function drawLine() {
+  byId("line-box").hidden = EVENTS.length === 0;
+  if (!EVENTS.length) return;
   const end = DATA.times[DATA.times.length - 1];
   const traces = Object.entries(KIND_COLOURS).map(([kind, colour]) => {
     const x = [], y = [], customdata = [];
@@ -136,10 +168,10 @@ function drawLine() {
   });
   const now = DATA.times.length ? milliseconds(DATA.times[state.step]) : 0;
   Plotly.react("line", traces, {
-    height: Math.min(420, 90 + 22 * EVENTS.length), margin: { l: 44, r: 8, t: 8, b: 36 }, showlegend: false,
-    hovermode: "closest", uirevision: "keep", xaxis: { type: "date", rangebreaks: pauses(), ...AXES },
-    yaxis: { tickvals: EVENTS.map((_, i) => i), ticktext: EVENTS.map((e) => String(e.id)), title: { text: "event" },
-      autorange: "reversed", ...AXES },
+    height: Math.min(420, 110 + 22 * EVENTS.length), margin: { l: 44, r: 24, t: 30, b: 40 }, showlegend: false,
+    hovermode: "closest", uirevision: "keep", xaxis: timeAxis(),
+    yaxis: { ...rowTicks(), title: { text: "id" },
+      range: [EVENTS.length - 0.4, -0.6], ...AXES },
     shapes: [{ type: "line", x0: now, x1: now, y0: 0, y1: 1, yref: "paper", line: { color: "#888", width: 1, dash: "dot" } }],
   }, CONFIG);
 }
@@ -162,14 +194,15 @@ function drawNode() {
 
 function fillEvents() {
   const head = byId("events").tHead, body = byId("events").tBodies[0];
-  head.innerHTML = "<tr><th>id</th><th>what</th><th>x, y [m]</th><th>since</th><th>until</th><th>adopted by</th><th>seen</th></tr>";
+  head.innerHTML = "<tr><th>id</th><th>what</th><th>x, y [m]</th><th>since</th><th>until</th><th>adopted by</th><th title=\"share of the looks at it in which it held\">held</th></tr>";
+  if (!EVENTS.length) body.insertRow().insertCell().append("No change was found.");
   for (const event of EVENTS) {
     const row = body.insertRow();
     row.dataset.event = event.id;
     const levels = Object.entries(event.adopted).filter(([, at]) => at !== null).map(([level]) => level).join(", ");
-    const until = event.closed_ns === null ? (event.not_seen_since ? "not looked at since" : "") : readable(event.closed_ns).slice(0, 16);
+    const until = event.closed_ns === null ? (event.not_seen_since ? "not looked at since" : "") : day(event.closed_ns);
     const what = event.kind + (event.recurring ? ` (${event.episodes.length}×)` : "");
-    const cells = [event.id, what, `${event.x.toFixed(2)}, ${event.y.toFixed(2)}`, readable(event.first_seen_ns).slice(0, 16), until, levels,
+    const cells = [event.id, what, `${event.x.toFixed(2)}, ${event.y.toFixed(2)}`, day(event.first_seen_ns), until, levels,
       `${Math.round(event.share_held * 100)} %`];
     cells.forEach((text, column) => {
       const cell = row.insertCell();
@@ -178,10 +211,21 @@ function fillEvents() {
         swatch.className = "swatch"; swatch.style.background = KIND_COLOURS[event.kind];
         cell.append(swatch);
       }
-      cell.append(String(text));
+      if (column >= 3 && column <= 5) cell.append(...words(text));
+      else cell.append(String(text));
     });
     row.addEventListener("click", () => choose(event.id));
   }
+}
+
+// Words that a line may be broken between, and nowhere within: a date stays whole.
+function words(text) {
+  return text.split(" ").flatMap((word) => {
+    const whole = document.createElement("span");
+    whole.className = "whole";
+    whole.append(word);
+    return [whole, " "];
+  });
 }
 
 function choose(id) {
@@ -195,7 +239,7 @@ function choose(id) {
 
 function markRows() {
   const now = BigInt(DATA.times[state.step] ?? "0");
-  for (const row of byId("events").tBodies[0].rows) {
+  for (const row of byId("events").tBodies[0].querySelectorAll("[data-event]")) {
     const event = EVENTS.find((one) => String(one.id) === row.dataset.event);
     row.classList.toggle("chosen", event.id === state.event);
     row.classList.toggle("past", !holdsAt(event, now));
@@ -210,10 +254,12 @@ function fillTable(id, rows) {
   }
 }
 
+const counted = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
+
 function fillRest() {
   const { scans } = DATA.report, summary = DATA.changes.summary;
-  byId("told").textContent = `${EVENTS.length} changes, ${summary.open ?? 0} of them hold; ${DATA.nodes.length} nodes; ` +
-    `${scans.used} of ${scans.read} scans used`;
+  byId("told").textContent = `${counted(EVENTS.length, "change")}, of which ${summary.open ?? 0} still hold; ` +
+    `${counted(DATA.nodes.length, "node")}; ${scans.used} of ${scans.read} scans used`;
   fillTable("scans", [["read", scans.read], ["used", scans.used], ...Object.entries(scans.dropped)]);
   fillTable("inputs", DATA.inputs.map((one) => [one.name, one.sha256]));
   fillTable("made", DATA.made);
@@ -234,6 +280,12 @@ function fillLevels() {
     swatch.className = "swatch"; swatch.style.background = colourOf(level);
     label.append(box, swatch, level, " ");
     byId("levels").append(label);
+  }
+  for (const [kind, colour] of Object.entries(KIND_COLOURS)) {
+    const label = document.createElement("span"), swatch = document.createElement("span");
+    swatch.className = "swatch"; swatch.style.background = colour;
+    label.append(swatch, kind);
+    byId("kinds").append(label);
   }
 }
 
@@ -256,7 +308,8 @@ async function start() {
   slider.addEventListener("input", () => { state.step = Number(slider.value); draw(); });
   if (DATA.nodes.length) state.node = 0;
   draw();
-  clicked("plan"); clicked("line");
+  clicked("plan");
+  if (EVENTS.length) clicked("line");
   document.body.dataset.ready = "yes";
 }
 
