@@ -195,7 +195,11 @@ function drawNode() {
 function fillEvents() {
   const head = byId("events").tHead, body = byId("events").tBodies[0];
   head.innerHTML = "<tr><th>id</th><th>what</th><th>x, y [m]</th><th>since</th><th>until</th><th>adopted by</th><th title=\"share of the looks at it in which it held\">held</th></tr>";
-  if (!EVENTS.length) body.insertRow().insertCell().append("No change was found.");
+  if (!EVENTS.length) {
+    const cell = body.insertRow().insertCell();
+    cell.colSpan = 7;
+    cell.append("No change was found.");
+  }
   for (const event of EVENTS) {
     const row = body.insertRow();
     row.dataset.event = event.id;
