@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import tracemalloc
 from itertools import pairwise
 from pathlib import Path
 
@@ -410,6 +411,20 @@ def test_messages_that_a_bag_announces_and_does_not_hold_are_told(tmp_path):
 def test_an_mcap_with_a_summary_is_not_read_whole_to_open_it(tmp_path, monkeypatch):
     monkeypatch.setattr("timemap_cli.logs.mcap_file.scan", None)
     assert read(FORMATS["mcap"][0](tmp_path)) == recorded.drive_rows(ROS2)
+
+
+def test_an_index_of_a_bag_that_claims_to_be_longer_than_the_file_takes_no_memory(tmp_path):
+    path = FORMATS["bag"][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    field = b"\n\0\0\0count="  # of the first index record
+    struct.pack_into("<I", content, content.index(field) + len(field), (1 << 32) - 1)
+    path.write_bytes(content)
+    tracemalloc.start()
+    found = read(path)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert found == recorded.drive_rows(ROS2)
+    assert most < 1 << 28
 
 
 @pytest.mark.parametrize("with_checksum", [True, False])

@@ -15,6 +15,7 @@ from timemap_cli.logs.raw import Bytes, Connection, Int64s, ros2_name, windows
 
 MESSAGE, BAG_HEADER, INDEX, CHUNK, CHUNK_INFO, CONNECTION = 2, 3, 4, 5, 6, 7  # values of a record's op
 SECOND_NS = 1_000_000_000
+SMALL_BYTES = 1 << 20
 INDEX_ENTRY = np.dtype([("sec", "<u4"), ("nsec", "<u4"), ("offset", "<u4")])
 
 _uint32 = struct.Struct("<I")
@@ -83,6 +84,11 @@ def file_record(file: IO[bytes], position: int) -> Record:
 
 
 def _read(file: IO[bytes], length: int) -> bytes:
+    if length > SMALL_BYTES:  # so much memory is taken before it turns out that the file ends
+        position = file.tell()
+        if position + length > file.seek(0, 2):
+            raise DamagedBagError("it is cut off")
+        file.seek(position)
     data = file.read(length)
     if len(data) < length:
         raise DamagedBagError("it is cut off")
@@ -135,7 +141,7 @@ def chunk_content(record: Record, data: bytes) -> bytes:
             data = lz4.frame.decompress(data)
         elif compression != b"none":
             raise DamagedBagError(f"its compression {compression.decode('utf-8', 'replace')!r} is unknown")
-    except (OSError, EOFError, ValueError, RuntimeError) as error:
+    except (OSError, EOFError, ValueError, RuntimeError, MemoryError) as error:
         raise DamagedBagError(f"it cannot be decompressed ({error})") from error
     if len(data) != record.number("size"):
         raise DamagedBagError(f"it holds {len(data)} bytes instead of {record.number('size')}")
