@@ -10,23 +10,17 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from timemap_cli import assembly
-from timemap_cli.changes.tracker import Tracker
 from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
-from timemap_cli.logs.stream import LEAST_SCANS, EndOfRecording, ScanCounts, sweeps
 from timemap_cli.logs.survey import Survey, survey
-from timemap_cli.model.estimates import Estimate
-from timemap_cli.model.learner import Learnt, Round
-from timemap_cli.model.nodes import Node
-from timemap_cli.model.observer import Observations, Observer, gathered
-from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
 from timemap_cli.second_process import mapped
+from timemap_cli.stages import Observing, Writing
 from timemap_cli.times import format_time, parse_time
 
 # Reasons for dropping a scan by which nothing is lost: the user asked for it, or the scan is there once more.
@@ -77,9 +71,9 @@ def replay(
         plan = survey(recordings, settings)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        observing = _Observing(recordings, plan, assembly.observer(settings, given))
+        observing = Observing(recordings, plan, assembly.observer(settings, given))
         learning = partial(assembly.learner, settings, given)
-        writing = _Writing(result, assembly.tracker(settings))
+        writing = Writing(result, assembly.tracker(settings))
         steps = observing.steps(*_span_ns(plan, start, end))
         for learnt in stack.enter_context(closing(mapped(learning, steps))):
             observing.set_aside(learnt.lost)
@@ -92,114 +86,6 @@ def replay(
         changes = changes_document(writing.tracker.events, observing.newest_ns)
         result.finish(metadata, dump(settings), _report(plan, summary), changes)
     return summary
-
-
-class _Observing:
-    """Reads the recordings and turns their scans into what the nodes see; counts what becomes of every scan."""
-
-    def __init__(self, recordings: Sequence[Recording], plan: Survey, observer: Observer) -> None:
-        self.counts = ScanCounts()
-        self.used = 0
-        self.newest_ns: int | None = None
-        self.began_anew = False  # stamps went back from one recording to the next
-        self._recordings = recordings
-        self._plan = plan
-        self._observer = observer
-
-    @property
-    def nodes(self) -> Sequence[Node]:
-        return self._observer.nodes
-
-    @property
-    def damage(self) -> tuple[str, ...]:
-        """What is wrong with the recordings, as far as read."""
-        return tuple(f"{r.path}: {problem}" for r in self._recordings for problem in r.problems)
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """What is odd about the recordings, while nothing of them is lost."""
-        return tuple(f"{r.path}: {remark}" for r in self._recordings for remark in r.remarks)
-
-    def set_aside(self, scans: int) -> None:
-        """Take note that so many of the scans seen were not learnt."""
-        self.used -= scans
-        self.counts.drop("lost", scans)
-
-    def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Observations | None]:
-        """Blocks of observations in stamp order; None where a recording has ended."""
-        plan, counts = self._plan, self.counts
-        blocks = sweeps(
-            self._recordings,
-            plan.selection,
-            plan.beams,
-            counts,
-            start_ns=start_ns,
-            end_ns=end_ns,
-            drives=plan.drives,
-        )
-        # Two scanners in turn, or bearings that differ from scan to scan, make blocks of one scan.
-        waiting: list[Observations] = []
-        for block in blocks:
-            is_end = isinstance(block, EndOfRecording)
-            if not isinstance(block, EndOfRecording):
-                waiting.append(self._observed(block))
-            if waiting and (is_end or sum(map(len, waiting)) >= LEAST_SCANS):
-                yield gathered(waiting)
-                waiting = []
-            if is_end:
-                yield None
-        if waiting:
-            yield gathered(waiting)
-
-    def _observed(self, block: Sweeps) -> Observations:
-        seen = self._observer.observe(block)
-        self._count(seen)
-        return seen
-
-    def _count(self, seen: Observations) -> None:
-        self.used += len(seen)
-        self.counts.drop("node_not_seen", seen.node_not_seen)
-        self.counts.drop("no_node", seen.no_node)
-        if len(seen):
-            self.began_anew |= self.newest_ns is not None and int(seen.stamps_ns[0]) < self.newest_ns
-            self.newest_ns = int(seen.stamps_ns[-1])
-
-
-class _Writing:
-    """Writes what was learnt into the result, and follows the changes in it."""
-
-    def __init__(self, result: ResultWriter, tracker: Tracker) -> None:
-        self.tracker = tracker
-        self.nodes: Sequence[Node] = ()
-        self.shortfalls: Mapping[str, float] = {}
-        self._result = result
-        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in tracker.levels}
-        self._newest_ns = 0
-        self._maps_are_due = False
-
-    @property
-    def span_ns(self) -> int:
-        """Time that the result spans so far."""
-        return self._result.span_ns
-
-    def take(self, learnt: Learnt, all_nodes: Sequence[Node]) -> None:
-        self.shortfalls = learnt.shortfalls
-        for made in learnt.rounds:
-            self._write(made, all_nodes[: made.nodes])
-        if learnt.ends_recording and self._maps_are_due:  # recordings may end together
-            self._result.write_maps(self._latest, self.nodes, self._newest_ns)
-            self._maps_are_due = False
-
-    def _write(self, made: Round, nodes: Sequence[Node]) -> None:
-        self.nodes, self._newest_ns = nodes, made.newest_ns
-        self._result.write_nodes(nodes, made.newest_ns)
-        self._result.write_estimates(made.estimates, made.newest_ns)
-        for estimate in made.estimates:
-            self._latest[estimate.level][estimate.node] = estimate
-            self._maps_are_due = True
-        found = self.tracker.update(nodes, self._latest, made.estimates)
-        if found:
-            self._result.write_changes(found, self.tracker.events, made.newest_ns)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
@@ -235,7 +121,7 @@ def _share_done(plan: Survey, now_ns: int | None) -> float:
 
 
 def _summary(
-    output: Path, settings: Settings, plan: Survey, observing: _Observing, writing: _Writing, seconds: float
+    output: Path, settings: Settings, plan: Survey, observing: Observing, writing: Writing, seconds: float
 ) -> ReplaySummary:
     read, dropped = observing.counts.read, observing.counts.dropped
     warnings = (*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks)
@@ -291,7 +177,7 @@ def _require_some_use(
     raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
 
 
-def _other_warnings(observing: _Observing, writing: _Writing) -> Iterator[str]:
+def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:
     if observing.began_anew:
         yield "the stamps of a recording begin before those of the one before it end: do not ask for times in between"
     for level, shortfall in writing.shortfalls.items():
