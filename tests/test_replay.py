@@ -229,7 +229,7 @@ def test_small_blocks_are_learnt_together_and_it_does_not_show(tmp_path, monkeyp
     together = replayed(tmp_path, log, settings=settings)
     assert [0 if seen is None else len(seen) for seen in learnt] == [128, 128, 44, 0]
     content = together.result.read_bytes()
-    monkeypatch.setattr("timemap_cli.replay.LEAST_SCANS", 1)
+    monkeypatch.setattr("timemap_cli.stages.LEAST_SCANS", 1)
     apart = replayed(tmp_path, log, settings=settings, force=True)
     assert len(learnt) == 4 + 301
     assert together.nodes > 30
