@@ -1,0 +1,89 @@
+"""What nodes say of a surface, and what stands apart."""
+
+import numpy as np
+import pytest
+
+from tests.changes.rooms import CENTRE, RADIUS, Box, estimate, ring
+from timemap_cli.changes.apart import stands_apart
+from timemap_cli.changes.rings import place, stack
+from timemap_cli.changes.rules import Rules
+from timemap_cli.changes.runs import Run
+from timemap_cli.changes.sightings import GONE, STANDS, UNTOLD, words
+from timemap_cli.model.nodes import Node
+
+FACE = np.stack([np.full(13, 2.0), np.linspace(-0.3, 0.3, 13)], axis=1)  # of a box at x = 2
+BOX = Box(2.3, 0.0)
+RULES = Rules()
+
+
+def word(ranges, node=CENTRE, points=FACE, **values):
+    side = {0: estimate(0, ranges, **values)}
+    (said,) = words(points, stack(side, [0]), place([node], [0], len(ranges), RADIUS), RULES)
+    return said
+
+
+def test_a_surface_that_is_shown_stands():
+    assert word(ring(CENTRE, [BOX])) == STANDS
+
+
+def test_a_surface_that_is_seen_past_is_gone():
+    assert word(ring(CENTRE)) == GONE
+    assert word(np.full(360, np.inf)) == GONE
+
+
+def test_what_is_hidden_or_unknown_cannot_be_told():
+    assert word(ring(CENTRE, [Box(1.0, 0.0, 0.2, 1.0)])) == UNTOLD
+    assert word(np.full(360, np.nan)) == UNTOLD
+    assert word(ring(CENTRE, [BOX]), samples=2) == UNTOLD
+    assert word(ring(CENTRE, [BOX]), support=0.4) == UNTOLD
+
+
+def test_a_surface_half_there_is_no_word():
+    ranges = ring(CENTRE)
+    ranges[:9] = 2.0  # the upper half of the face alone
+    assert word(ranges) == UNTOLD
+
+
+def test_a_node_out_of_reach_says_nothing():
+    far = Node(-30.0, 0.0)
+    assert word(np.full(360, np.inf), node=far) == UNTOLD
+
+
+def test_what_was_last_looked_at_an_hour_before_the_nodes_newest_scan_is_no_word():
+    hour = 3_600_000_000_000
+    side = {0: estimate(0, ring(CENTRE), stamp_ns=3 * hour)}
+    for seen_ns, said in ((2 * hour, GONE), (2 * hour - 1, UNTOLD)):
+        side[0].last_seen_ns[:] = seen_ns
+        rings = stack(side, [0])
+        assert words(FACE, rings, place([CENTRE], [0], 360, RADIUS), RULES)[0] == said
+
+
+def run_at(points):
+    return Run(0, np.arange(len(points)), np.array(points, float))
+
+
+def apart(points, ranges):
+    side = {0: estimate(0, ranges)}
+    return stands_apart(run_at(points), stack(side, [0]), place([CENTRE], [0], 360, RADIUS), RULES)
+
+
+def test_points_off_all_surfaces_of_the_other_side_stand_apart():
+    assert apart(FACE, ring(CENTRE))
+    assert apart(FACE, np.full(360, np.nan))
+
+
+@pytest.mark.parametrize(("beside_m", "expected"), [(0.1, False), (0.2, True)])
+def test_a_wall_seen_at_a_flat_angle_is_the_same_wall_beside_its_points(beside_m, expected):
+    """A wall along y = 0.5, seen to x = 4: there ranges are 30 times as sensitive as the wall is thick."""
+    bearings = (np.arange(360) + 0.5) * np.pi / 180
+    with np.errstate(divide="ignore"):
+        ranges = np.where(np.sin(bearings) > 0, 0.5 / np.sin(bearings), 9.0)
+    ranges[ranges > 9.0] = 9.0
+    points = [(x, 0.5 - beside_m) for x in (2.0, 2.1, 2.2, 2.3)]
+    assert apart(points, ranges) is expected
+
+
+def test_a_run_needs_three_bins_apart():
+    on_wall = [(5.0 * np.cos(a), 5.0 * np.sin(a)) for a in np.radians((40, 41, 42, 43))]
+    assert not apart([*FACE[:2].tolist(), *on_wall], ring(CENTRE))
+    assert apart([*FACE[:3].tolist(), *on_wall], ring(CENTRE))
