@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from math import hypot
 
 from timemap_cli.changes.difference import Kind
 from timemap_cli.changes.rings import Floats
@@ -73,12 +72,6 @@ class Event:
         """x_min, y_min, x_max, y_max of the points [m]."""
         (x_min, y_min), (x_max, y_max) = self.points.min(axis=0).tolist(), self.points.max(axis=0).tolist()
         return x_min, y_min, x_max, y_max
-
-    @property
-    def size_m(self) -> float:
-        """Diagonal of the bounds [m]."""
-        x_min, y_min, x_max, y_max = self.bounds
-        return hypot(x_max - x_min, y_max - y_min)
 
 
 class Turn(Enum):

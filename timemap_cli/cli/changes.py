@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from timemap_cli.cli.chosen import chosen_result
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
@@ -43,13 +44,9 @@ def changes(
     Without RESULT, the newest *.timemap.mcap in the current folder is taken. TIME is +10s or end-5s, RFC 3339, or
     nanoseconds since 1970.
     """
-    from timemap_cli.comparing import newest_result
     from timemap_cli.results.reader import ResultReader
 
-    if result is None:
-        result = newest_result(Path())
-        terminal.note(f"using {result}, the newest result in this folder")
-    with ResultReader(result) as reader:
+    with ResultReader(chosen_result(terminal, result)) as reader:
         document, levels = reader.changes, reader.levels
         selection = _selection(levels, (reader.start_ns, reader.end_ns), **wanted)
     events = selected(document["events"], selection, sort)

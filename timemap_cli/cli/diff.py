@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from timemap_cli.cli.chosen import chosen_result
 from timemap_cli.cli.level_words import LevelPairs
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
@@ -81,11 +82,7 @@ def diff(
     """
     _check_usage(results, levels, at, between)
 
-    from timemap_cli.comparing import newest_result
-
-    if not results:
-        results = (newest_result(Path()),)
-        terminal.note(f"using {results[0]}, the newest result in this folder")
+    results = results or (chosen_result(terminal, None),)
     comparison = _compare(results, levels, at, between)
     comparison = replace(comparison, difference=comparison.difference.at_least(min_size, min_shift))
     _print(terminal, comparison, as_json)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from timemap_cli.cli.chosen import begins_with, chosen_result, title_of
 from timemap_cli.cli.level_words import LevelPairs
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
@@ -51,19 +52,16 @@ def plot(
     Free space is white, unknown space grey, and a surface the darker the better supported. Without RESULT, the
     newest *.timemap.mcap in the current folder is taken. Needs matplotlib: pip install 'timemap-cli[plot]'.
     """
-    from timemap_cli.comparing import newest_result
     from timemap_cli.results.atomic_file import AtomicFile
     from timemap_cli.results.reader import ResultReader
 
     _check_usage(levels, node)
-    if result is None:
-        result = newest_result(Path())
-        terminal.note(f"using {result}, the newest result in this folder")
-    title = result.name.removesuffix(".mcap").removesuffix(".timemap")
+    result = chosen_result(terminal, result)
+    title = title_of(result)
     output = output or Path(title + ".png")
     with (
         ResultReader(result) as reader,
-        AtomicFile(output, force=force, may_replace=_is_png, replaced="a PNG picture") as file,
+        AtomicFile(output, force=force, may_replace=begins_with(_PNG), replaced="a PNG picture") as file,
     ):
         file.write(_level(reader, levels, title) if node is None else _node(reader, node, title))
         file.commit()
@@ -107,11 +105,3 @@ def _node(reader: "ResultReader", node: int, title: str) -> bytes:
         )
     held = {level: reader.estimates(level).get(node) for level in reader.levels}
     return node_picture(f"{title}: node {node}", reader.nodes[node], held)
-
-
-def _is_png(path: Path) -> bool:
-    """Whether a file may give way to a picture: only a PNG may."""
-    if not path.is_file():  # opening a pipe would wait for somebody to write
-        return False
-    with path.open("rb") as file:
-        return file.read(len(_PNG)) == _PNG

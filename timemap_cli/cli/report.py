@@ -4,9 +4,12 @@ from pathlib import Path
 
 import click
 
+from timemap_cli.cli.chosen import begins_with, chosen_result, title_of
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode
+
+_HTML = b"<!doctype html>"
 
 
 @click.command(short_help="one page to look at: the map over time, the changes, what they rest on")
@@ -26,30 +29,19 @@ def report(terminal: Terminal, /, result: Path | None, output: Path | None, forc
     Without RESULT, the newest *.timemap.mcap in the current folder is taken. Needs plotly:
     pip install 'timemap-cli[report]'.
     """
-    from timemap_cli.comparing import newest_result
     from timemap_cli.reports.page import page
     from timemap_cli.reports.page_data import page_data
     from timemap_cli.results.atomic_file import AtomicFile
     from timemap_cli.results.reader import ResultReader
 
-    if result is None:
-        result = newest_result(Path())
-        terminal.note(f"using {result}, the newest result in this folder")
-    title = result.name.removesuffix(".mcap").removesuffix(".timemap")
+    result = chosen_result(terminal, result)
+    title = title_of(result)
     output = output or Path(title + ".html")
     with (
         ResultReader(result) as reader,
-        AtomicFile(output, force=force, may_replace=_is_page, replaced="a page") as file,
+        AtomicFile(output, force=force, may_replace=begins_with(_HTML), replaced="a page") as file,
     ):
         file.write(page(title, page_data(reader)).encode())
         file.commit()
     terminal.result(str(output))
     return ExitCode.DONE
-
-
-def _is_page(path: Path) -> bool:
-    """Whether a file may give way to a page: only HTML may."""
-    if not path.is_file():  # opening a pipe would wait for somebody to write
-        return False
-    with path.open("rb") as file:
-        return file.read(15).lower() == b"<!doctype html>"
