@@ -15,6 +15,7 @@ from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
+from timemap_cli.model.nodes import Node
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
@@ -86,6 +87,16 @@ def replay(
         changes = changes_document(writing.tracker.events, observing.newest_ns)
         result.finish(metadata, dump(settings), _report(plan, summary), changes)
     return summary
+
+
+def lay_nodes(logs: Sequence[Path], settings: Settings) -> Sequence[Node]:
+    """The nodes that a replay of the recordings would make, without learning anything."""
+    with ExitStack() as stack:
+        recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
+        observing = Observing(recordings, survey(recordings, settings), assembly.observer(settings, ()))
+        for _ in observing.steps(None, None):
+            pass
+        return tuple(observing.nodes)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
