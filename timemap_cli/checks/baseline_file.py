@@ -80,12 +80,12 @@ def _lines(baseline: Baseline) -> Iterator[str]:
     yield f"radius: {one.radius}"
     yield f"angle_bins: {one.angle_bins}"
     yield f"no_return: {json.dumps(one.no_return)}"
+    yield from _rows("beams", {json.dumps(topic): kinds for topic, kinds in one.beams.items()})
     dropped = ", ".join(f"{reason}: {count}" for reason, count in sorted(one.scans.dropped.items()))
     yield f"scans: {{read: {one.scans.read}, used: {one.scans.used}, dropped: {{{dropped}}}}}"
     yield from _mapping("tolerances", dict(sorted(baseline.tolerances.items())))
     yield from _list("events", [_event_values(event) for event in one.events])
-    yield "nodes:"
-    yield from (f"  {i}: {{x: {node.x}, y: {node.y}}}" for i, node in enumerate(one.nodes))
+    yield from _rows("nodes", {str(i): {"x": node.x, "y": node.y} for i, node in enumerate(one.nodes)})
     yield from _RINGS_NOTE
     yield "levels:"
     for level, rings in one.levels.items():
@@ -96,6 +96,11 @@ def _lines(baseline: Baseline) -> Iterator[str]:
 def _mapping(name: str, values: Mapping[str, object]) -> Iterator[str]:
     yield f"{name}:" if values else f"{name}: {{}}"
     yield from (f"  {key}: {json.dumps(value)}" for key, value in values.items())
+
+
+def _rows(name: str, rows: Mapping[str, Mapping[str, object]]) -> Iterator[str]:
+    yield f"{name}:" if rows else f"{name}: {{}}"
+    yield from (f"  {key}: {_flow(row)}" for key, row in rows.items())
 
 
 def _list(name: str, rows: Sequence[Mapping[str, object]]) -> Iterator[str]:
@@ -142,6 +147,7 @@ def _baseline(values: Any, path: Path) -> Baseline:
         radius=float(values["radius"]),
         angle_bins=bins,
         no_return=str(values["no_return"]),
+        beams={topic: dict(kinds) for topic, kinds in values["beams"].items()},
         scans=Scans(int(scans["read"]), int(scans["used"]), dict(scans["dropped"])),
         nodes=nodes,
         levels={name: _rings(rows or {}, len(nodes), bins) for name, rows in values["levels"].items()},

@@ -18,6 +18,8 @@ def likely_causes(expected: Snapshot, found: Snapshot, failures: Sequence[Measur
         yield f"a setting was changed: {setting}"
     if expected.no_return != found.no_return:
         yield f"a missing return means '{found.no_return}' now and meant '{expected.no_return}': {_NO_RETURN}"
+    if beams := failed.get("beams.kinds"):
+        yield f"{beams.text}: the driver, or the code that it writes for a missing return"
     yield from _geometry(failed)
     yield from _scans(expected, found, failed)
     yield from different_inputs(expected, found)

@@ -6,9 +6,12 @@ import numpy as np
 
 from timemap_cli.checks.causes import different_inputs, likely_causes
 from timemap_cli.checks.event_measures import event_measures
-from timemap_cli.checks.level_measures import Pair, level_measures
+from timemap_cli.checks.level_measures import level_measures
 from timemap_cli.checks.matching import Matched, matched
+from timemap_cli.checks.motion_measures import motion_measures
+from timemap_cli.checks.pairs import Pair
 from timemap_cli.checks.snapshot import Snapshot
+from timemap_cli.checks.surfaces import offsets
 from timemap_cli.checks.verdict import Measure, Verdict
 from timemap_cli.checks.whole_measures import whole_measures
 from timemap_cli.errors import UsageError
@@ -31,7 +34,7 @@ def compare(
     _require_comparable(expected, found, nodes, baseline)
     measures = [
         *whole_measures(expected, found, nodes, allowed),
-        *_level_measures(expected, found, nodes, allowed),
+        *_ring_measures(expected, found, nodes, allowed),
         *event_measures(expected.events, found.events, allowed),
     ]
     verdict = Verdict(
@@ -46,28 +49,32 @@ def compare(
     return Verdict(name, baseline, verdict.measures, causes, verdict.notes, verdict.unequal)
 
 
-def _level_measures(
+def _ring_measures(
     expected: Snapshot, found: Snapshot, nodes: Matched, allowed: Mapping[str, float]
 ) -> Iterator[Measure]:
-    ours, theirs = (np.array(side, np.int64) for side in zip(*nodes.pairs, strict=True))
-    places = [np.array([(n.x, n.y) for n in side.nodes], np.float64) for side in (expected, found)]
-    for level in expected.levels:
-        if level not in found.levels:
-            continue
-        one, other = expected.levels[level], found.levels[level]
-        known = [i for i in range(len(ours)) if one.digests[ours[i]] and other.digests[theirs[i]]]
-        if not known:
-            continue
-        rows, other_rows = ours[known], theirs[known]
-        centres = places[1][other_rows]
-        pair = Pair(
-            one.ranges[rows],
-            other.ranges[other_rows],
-            centres,
-            places[0][rows] - centres,
-            tuple(rows.tolist()),
-        )
-        yield from level_measures(level, pair, allowed)
+    """Figures of all levels together, then of each."""
+    levels = [level for level in expected.levels if level in found.levels]
+    pairs = [_pair(expected, found, nodes, level) for level in levels]
+    come = [offsets(pair.found, pair.expected, pair.apart) for pair in pairs]
+    gone = [offsets(pair.expected, pair.found, -pair.apart) for pair in pairs]
+    yield from motion_measures(pairs, come, allowed)
+    for level, pair, ours, theirs in zip(levels, pairs, come, gone, strict=True):
+        yield from level_measures(level, pair, ours, theirs, allowed)
+
+
+def _pair(expected: Snapshot, found: Snapshot, nodes: Matched, level: str) -> Pair:
+    rows, others = (np.array(side, np.int64) for side in zip(*nodes.pairs, strict=True))
+    places, other_places = (
+        np.array([(node.x, node.y) for node in side.nodes], np.float64) for side in (expected, found)
+    )
+    centres = other_places[others]
+    return Pair(
+        expected=expected.levels[level].ranges[rows],
+        found=found.levels[level].ranges[others],
+        centres=centres,
+        apart=places[rows] - centres,
+        numbers=tuple(rows.tolist()),
+    )
 
 
 def _require_comparable(expected: Snapshot, found: Snapshot, nodes: Matched, baseline: str) -> None:

@@ -1,50 +1,32 @@
 """What moved between the rings of one level: all together, at single nodes, at places."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from timemap_cli.checks.fits import Fits, fitted
+from timemap_cli.checks.pairs import SHOWN, Pair
 from timemap_cli.checks.places import Ends, MovedPlace, moved_places
-from timemap_cli.checks.surfaces import Offsets, ends, offsets
+from timemap_cli.checks.surfaces import Offsets, ends
 from timemap_cli.checks.tolerances import TOLERANCES
 from timemap_cli.checks.verdict import Measure, Spot
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
-_SHOWN = 5  # spots: more do not help to find the cause
 
+def level_measures(
+    level: str, pair: Pair, come: Offsets, gone: Offsets, allowed: Mapping[str, float]
+) -> list[Measure]:
+    """All figures of a level, with the places where they come from.
 
-@dataclass(frozen=True, slots=True)
-class Pair:
-    """The rings of the nodes that both sides know."""
-
-    expected: Floats  # (nodes, angle_bins) [m]; +inf clear, NaN unknown
-    found: Floats  # (nodes, angle_bins) [m]
-    centres: Floats  # (nodes, 2) [m] map frame, of the result
-    apart: Floats  # (nodes, 2) [m] from the result's node to the baseline's
-    numbers: tuple[int, ...]  # of the nodes in the baseline
-
-    @property
-    def both(self) -> Bools:
-        """(nodes, angle_bins) known to both."""
-        return np.asarray(~np.isnan(self.expected) & ~np.isnan(self.found))
-
-
-def level_measures(level: str, pair: Pair, allowed: Mapping[str, float]) -> list[Measure]:
-    """All figures of a level, with the places where they come from."""
-    come = offsets(pair.found, pair.expected, pair.apart)
-    gone = offsets(pair.expected, pair.found, -pair.apart)
+    `come` are the offsets of the result's ends from the baseline's surfaces, `gone` those the other way round.
+    """
     step_m = allowed["ranges.step"]
     places = moved_places(_ends(pair, come, gone), step_m, len(pair.numbers))
-    motion = fitted(*ends(pair.found), come)
     told = _Told(level, pair, allowed)
     return [
-        *told.motions(motion),
         told.moved(come, gone, step_m),
         told.places(places),
         *told.status(),
@@ -74,36 +56,6 @@ class _Told:
         self._pair = pair
         self._allowed = allowed
 
-    def motions(self, fits: Fits) -> Iterator[Measure]:
-        """What the nodes have in common, and what is left of each."""
-        known = fits.known
-        if not known.any():
-            return
-        x, y, turn = fits.x[known], fits.y[known], np.degrees(fits.turn[known])
-        common_x, common_y, common_turn = (float(np.median(part)) for part in (x, y, turn))
-        shift = math.hypot(common_x, common_y)
-        yield self._measure(
-            "map.shift",
-            shift,
-            f"all nodes are shifted by {shift:.3f} m (x {common_x:+.3f}, y {common_y:+.3f})",
-        )
-        yield self._measure("map.turn", abs(common_turn), f"all nodes are turned by {common_turn:+.2f} deg")
-        numbers = np.flatnonzero(known)
-        left = np.hypot(x - common_x, y - common_y)
-        yield self._measure(
-            "nodes.shift",
-            _rms(left),
-            f"the nodes' surfaces are shifted by {_rms(left):.3f} m each, in different directions",
-            self._node_spots(numbers, left, lambda value: f"shifted by {value:.3f} m"),
-        )
-        left = np.abs(turn - common_turn)
-        yield self._measure(
-            "nodes.turn",
-            _rms(left),
-            f"the nodes' surfaces are turned by {_rms(left):.2f} deg each, in different directions",
-            self._node_spots(numbers, left, lambda value: f"turned by {value:.2f} deg"),
-        )
-
     def moved(self, come: Offsets, gone: Offsets, step_m: float) -> Measure:
         """How many angle bins show something that the other side does not have."""
         both = self._pair.both
@@ -122,7 +74,7 @@ class _Told:
                 f", the farthest by {finite.max():.2f} m at {x:.2f}, {y:.2f} (node {self._pair.numbers[row]})"
             )
         shares = moved.sum(axis=1) / np.maximum(1, both.sum(axis=1))
-        spots = self._node_spots(
+        spots = self._pair.node_spots(
             np.arange(len(shares)), shares, lambda value: f"{100 * value:.1f} % of its angle bins moved"
         )
         return self._measure("ranges.moved", float(moved.sum() / max(1, both.sum())), text, spots)
@@ -131,7 +83,7 @@ class _Told:
         """Where several nodes agree that a surface moved."""
         spots = tuple(
             Spot(place.x, place.y, f"{_surface(place)}, seen from {_nodes(place.nodes)}", place.nodes)
-            for place in places[:_SHOWN]
+            for place in places[:SHOWN]
         )
         text = "no place where several nodes see a surface that moved"
         if places:
@@ -154,7 +106,7 @@ class _Told:
         )
         for name, which, of, told in changes:
             shares = which.sum(axis=1) / np.maximum(1, of.sum(axis=1))
-            spots = self._node_spots(
+            spots = self._pair.node_spots(
                 np.arange(len(shares)), shares, lambda value: f"{100 * value:.1f} % of its angle bins"
             )
             share = float(which.sum() / max(1, of.sum()))
@@ -171,28 +123,8 @@ class _Told:
                 return float(x[0, angle_bin] + centre[0]), float(y[0, angle_bin] + centre[1])
         raise ValueError("neither side has an end there")
 
-    def _node_spots(
-        self, rows: npt.NDArray[np.int64], values: Floats, told: Callable[[float], str]
-    ) -> tuple[Spot, ...]:
-        """The nodes with the greatest values."""
-        order = np.argsort(-values, kind="stable")[:_SHOWN]
-        return tuple(
-            Spot(
-                float(self._pair.centres[row, 0]),
-                float(self._pair.centres[row, 1]),
-                f"node {self._pair.numbers[row]}: {told(value)}",
-                (self._pair.numbers[row],),
-            )
-            for row, value in ((int(rows[i]), float(values[i])) for i in order)
-            if value > 0
-        )
-
     def _measure(self, name: str, value: float, text: str, spots: tuple[Spot, ...] = ()) -> Measure:
         return Measure(name, self._level, value, self._allowed[name], TOLERANCES[name].unit, text, spots)
-
-
-def _rms(values: Floats) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _percent(part: int, whole: int) -> str:

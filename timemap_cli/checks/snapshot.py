@@ -62,7 +62,10 @@ class Snapshot:
     map_frame: str
     radius: float  # [m]
     angle_bins: int
-    no_return: str
+    no_return: str  # what a missing return counted as: "clear" or "ignore"
+    beams: Mapping[
+        str, Mapping[str, float]
+    ]  # scan topic -> kind of beam -> share of it; none where not known
     scans: Scans
     nodes: Sequence[Node]
     levels: Mapping[str, LevelRings]  # fastest first

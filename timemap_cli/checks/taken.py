@@ -30,6 +30,7 @@ def taken(reader: ResultReader) -> Snapshot:
         radius=reader.radius,
         angle_bins=reader.angle_bins,
         no_return=str(report.get("no_return", "")),
+        beams=report.get("beams", {}),
         scans=_scans(metadata),
         nodes=tuple(reader.nodes),
         levels={level: _rings(reader, level) for level in reader.levels},

@@ -8,6 +8,7 @@ from timemap_cli.checks.tolerances import TOLERANCES
 from timemap_cli.checks.verdict import Measure, Spot
 
 _SHOWN = 5
+_KINDS = {"hit": "hits", "no_return": "missing returns", "invalid": "invalid", "too_close": "too close"}
 
 
 def whole_measures(
@@ -33,6 +34,7 @@ def whole_measures(
         f"{_dropped(expected)}",
         allowed,
     )
+    yield from _beams(expected, found, allowed)
     for name, numbers, side, told in (
         ("nodes.missing", nodes.missing, expected, "are not there"),
         ("nodes.new", nodes.new, found, "are new"),
@@ -40,6 +42,23 @@ def whole_measures(
         spots = tuple(Spot(side.nodes[i].x, side.nodes[i].y, f"node {i}", (i,)) for i in numbers[:_SHOWN])
         text = f"{len(numbers)} of {len(side.nodes)} nodes {told}"
         yield _measure(name, len(numbers) / max(1, len(expected.nodes)), text, allowed, spots)
+
+
+def _beams(expected: Snapshot, found: Snapshot, allowed: Mapping[str, float]) -> Iterator[Measure]:
+    """The kind of beam whose share differs most, of the scan topics that both sides tell about."""
+    told = [
+        (
+            abs(share - now.get(kind, 0.0)),
+            f"{100 * now.get(kind, 0.0):.2f} % of the beams of {topic} are {_KINDS[kind]}, "
+            f"{100 * share:.2f} % expected",
+        )
+        for topic, kinds in expected.beams.items()
+        if (now := found.beams.get(topic)) is not None
+        for kind, share in kinds.items()
+    ]
+    if told:
+        value, text = max(told)
+        yield _measure("beams.kinds", value, text, allowed)
 
 
 def changed_settings(expected: Mapping[str, object], found: Mapping[str, object]) -> list[str]:

@@ -14,6 +14,8 @@ def value(number: float, unit: str) -> str:
         return f"{100 * number:.3g} %"
     if unit == "m":
         return f"{number:.3f} m"
+    if unit.endswith("s") and number == 1 and len(unit) > 1:
+        unit = unit[:-1]
     return f"{number:.3g} {unit}" if number < 1000 else f"{number:.0f} {unit}"
 
 
