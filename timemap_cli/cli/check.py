@@ -1,8 +1,8 @@
 """`timemap check`: a recording or a result against its baseline."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,7 +13,7 @@ from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
 
 if TYPE_CHECKING:
-    from timemap_cli.checking import Updated
+    from timemap_cli.checking import Check, Updated
     from timemap_cli.checks.verdict import CheckedCase
 
 _FORMATS = ("text", "json", "junit", "github", "markdown")
@@ -25,6 +25,7 @@ _USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite re
 @click.option("--baseline", type=NAMED_PATH, metavar="FILE", help="What the map is expected to be.")
 @click.option("--update-baseline", "updates", is_flag=True, help="Write the baseline instead of checking.")
 @click.option("--suite", type=NAMED_PATH, metavar="FILE", help="Run the checks that this file lists.")
+@click.option("--jobs", type=click.IntRange(1), default=1, metavar="N", help="Checks of a suite at a time.")
 @click.option("--config", type=NAMED_PATH, metavar="FILE", help="Settings of the replay.")
 @click.option("-o", "--output", type=NAMED_PATH, metavar="OUT.mcap", help="Keep the result of the replay.")
 @click.option("--force", is_flag=True, help="Replace an existing result.")
@@ -51,12 +52,11 @@ def check(
     baseline: Path | None,
     updates: bool,
     suite: Path | None,
-    config: Path | None,
-    output: Path | None,
-    force: bool,
+    jobs: int,
+    formats: tuple[str, ...],
     tolerances: tuple[str, ...],
     exact: bool,
-    formats: tuple[str, ...],
+    **replaying: Any,
 ) -> ExitCode:
     """Tell whether RESULT, or what a replay of LOG... gives, is still what its baseline says.
 
@@ -68,30 +68,55 @@ def check(
     Exit code 4: something is out of tolerance. 2: nothing can be compared. 3: all is within tolerance, but
     data was lost.
     """
-    from timemap_cli.checking import Check, update
-    from timemap_cli.checking import check as checked
     from timemap_cli.checks.tolerances import parsed
     from timemap_cli.checks.verdict import exit_code_of
 
-    wanted = _wanted(formats)
-    if baseline is None or not sources or suite is not None:
-        raise UsageError("name what to check and its baseline", hint=_USES)
-    one = Check(
-        sources=sources,
-        baseline=baseline,
-        name=title_of(sources[0]),
-        config=config,
-        output=output,
-        force=force,
-        tolerances=parsed(tolerances),
-        exact=exact,
-    )
-    with ProgressBar(terminal) as progress:
+    wanted, limits = _wanted(formats), parsed(tolerances)
+    if suite is not None:
+        _require_alone(suite, sources, baseline, replaying)
+        from timemap_cli import suite as suites
+
+        checks = suites.read_suite(suite, limits, exact=exact)
         if updates:
-            return _tell_updated(terminal, update(one, progress))
-        cases = [checked(one, progress)]
+            return _tell_updated(terminal, suites.update_all(checks, jobs))
+        cases = suites.run(checks, jobs)
+    else:
+        one = _check(sources, baseline, limits, exact, **replaying)
+        from timemap_cli import checking
+
+        with ProgressBar(terminal) as progress:
+            if updates:
+                return _tell_updated(terminal, [checking.update(one, progress)])
+            cases = [checking.check(one, progress)]
     _tell(terminal, cases, wanted)
     return exit_code_of(cases)
+
+
+def _check(
+    sources: tuple[Path, ...],
+    baseline: Path | None,
+    tolerances: Mapping[str, float],
+    exact: bool,
+    **replaying: Any,
+) -> "Check":
+    if baseline is None or not sources:
+        missing = "no recording or result is named" if baseline else "--baseline is missing"
+        raise UsageError(missing, hint=_USES)
+    from timemap_cli.checking import Check
+
+    name = title_of(sources[0])
+    return Check(sources, baseline, name, tolerances=tolerances, exact=exact, **replaying)
+
+
+def _require_alone(
+    suite: Path, sources: tuple[Path, ...], baseline: Path | None, replaying: Mapping[str, Any]
+) -> None:
+    """UsageError where something is given that the suite says for each of its checks."""
+    given = [str(source) for source in sources]
+    given += ["--baseline"] if baseline else []
+    given += [f"--{name}" for name, value in replaying.items() if value]
+    if given:
+        raise UsageError(f"{given[0]} does not go with --suite: {suite} says it for each check", hint=_USES)
 
 
 def _wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
@@ -141,10 +166,11 @@ def _formatted(form: str, cases: "Sequence[CheckedCase]") -> str:
     return writers[form](cases)
 
 
-def _tell_updated(terminal: Terminal, updated: "Updated") -> ExitCode:
+def _tell_updated(terminal: Terminal, done: "Sequence[Updated]") -> ExitCode:
     from timemap_cli.reports.check_text import updated_text
 
-    for warning in updated.warnings:
-        terminal.warn(warning)
-    terminal.result(updated_text(str(updated.path), updated.snapshot, updated.was))
-    return ExitCode.DATA_LOST if updated.lost else ExitCode.DONE
+    for one in done:
+        for warning in one.warnings:
+            terminal.warn(warning)
+        terminal.result(updated_text(str(one.path), one.snapshot, one.was))
+    return ExitCode.DATA_LOST if any(one.lost for one in done) else ExitCode.DONE
