@@ -34,7 +34,7 @@ def test_noise_of_a_centimetre_passes_but_not_to_the_digest():
     other = rings(seen(NODES, ROOM) + noise)
     found = snapshot(levels={"short": replace(other, digests=("x", "y", "z"))})
     assert verdict(found).outcome is Outcome.PASSED
-    assert verdict(found, exact=True).unequal == ("level short at 3 nodes: 0, 1, 2",)
+    assert verdict(found, exact=True).unequal == ("level short at node 0, 1, 2",)
     assert verdict(found, exact=True).outcome is Outcome.FAILED
 
 

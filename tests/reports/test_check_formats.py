@@ -97,7 +97,7 @@ def test_junit_has_the_attributes_and_the_order_that_the_schemas_demand():
     assert root.tag == "testsuites"
     for element in root.iter():
         attributes, children = DEMANDED[element.tag]
-        assert set(attributes) <= element.keys()
+        assert set(attributes) <= set(element.keys())
         places = [children.index(child.tag) for child in element]
         assert places == sorted(places)
 
