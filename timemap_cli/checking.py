@@ -1,6 +1,6 @@
 """A recording or a result against its baseline: replaying where that is due, comparing, and writing baselines."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -47,23 +47,29 @@ class Updated:
     warnings: tuple[str, ...]
 
 
-def check(one: Check, progress: Progress | None = None) -> CheckedCase:
+def check(
+    one: Check,
+    progress: Progress | None = None,
+    look: Callable[[ResultReader, Snapshot, Verdict], None] | None = None,
+) -> CheckedCase:
     """Compare with the baseline; recordings are replayed with the baseline's nodes.
+
+    `look` is called with the result, what was expected and the verdict, while the result is there.
 
     Raises UsageError where there is no baseline or nothing can be compared, and what a replay raises.
     """
     baseline = baseline_file.read(one.baseline)
-    with _result(one, baseline.expected.nodes, progress) as (result, summary):
-        with ResultReader(result) as reader:
-            found = taken(reader)
+    with _result(one, baseline.expected.nodes, progress) as (result, summary), ResultReader(result) as reader:
         verdict = compare(
             baseline.expected,
-            found,
+            taken(reader),
             {**defaults(), **baseline.tolerances, **one.tolerances},
             name=one.name,
             baseline=str(one.baseline),
             exact=one.exact,
         )
+        if look is not None:
+            look(reader, baseline.expected, verdict)
     lost, warnings = _trouble(summary)
     return CheckedCase(one.name, str(one.baseline), verdict, lost=lost, warnings=warnings)
 
