@@ -179,6 +179,20 @@ def test_a_result_of_a_timemap_that_kept_other_things_is_refused(tmp_path, monke
         Earlier.of(old)
 
 
+def test_what_is_known_already_is_refused_and_may_be_cut_off(tmp_path):
+    log = standing_log(tmp_path / "a.mcap", n_scans=600)
+    one = replay([log], tmp_path / "one.timemap.mcap", SETTINGS, end="+30s").result
+    with pytest.raises(
+        UsageError, match=r"begin at 2023-11-14T22:13:20Z, before .*one\.timemap\.mcap ends"
+    ) as raised:
+        replay([log], tmp_path / "two.timemap.mcap", SETTINGS, resume=one)
+    assert raised.value.hint is not None
+    begin = raised.value.hint.rpartition("--start ")[2]
+    assert begin == "2023-11-14T22:13:50Z"
+    two = replay([log], tmp_path / "two.timemap.mcap", SETTINGS, resume=one, start=begin).result
+    assert_same_end(two, replay([log], tmp_path / "whole.timemap.mcap", SETTINGS).result)
+
+
 def test_given_nodes_stay_all_there_are(tmp_path):
     places = tmp_path / "nodes.csv"
     places.write_text("2 2\n8 2\n5 5\n")

@@ -84,7 +84,10 @@ def replay(
         if earlier is not None:
             writing.restore(earlier.parts(), observer.nodes)
             learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
-        steps = observing.steps(*_span_ns(plan, start, end))
+        start_ns, end_ns = _span_ns(plan, start, end)
+        if earlier is not None:
+            earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+        steps = observing.steps(start_ns, end_ns)
         for answer in stack.enter_context(closing(mapped(learning, steps))):
             if isinstance(answer, Kept):
                 writing.keep(answer, observing.state)

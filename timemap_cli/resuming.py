@@ -7,6 +7,7 @@ from pathlib import Path
 from timemap_cli.config import Settings, loads
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.logs.scan_window import WINDOW_NS
 from timemap_cli.logs.static_transforms import StaticTransforms
 from timemap_cli.logs.survey import Known
 from timemap_cli.model.learner import Kept
@@ -15,6 +16,7 @@ from timemap_cli.model.state import State, without_prefix
 from timemap_cli.overridden import differing
 from timemap_cli.results.reader import ResultReader
 from timemap_cli.results.state_messages import Part, StatePart
+from timemap_cli.times import format_time
 
 _MAY_DIFFER = ("input.max_dropped",)  # it changes nothing that is remembered
 
@@ -70,6 +72,15 @@ class Earlier:
             poses=chosen["poses"],
         )
         return replace(self.settings, input=wanted)
+
+    def require_before(self, begin_ns: int) -> None:
+        """UsageError for scans that begin earlier than this result ends, by more than may come out of order."""
+        end_ns = self.reading["stream.window.clock_ns"]
+        if begin_ns < end_ns - WINDOW_NS:
+            raise UsageError(
+                f"the recordings begin at {format_time(begin_ns)}, before {self.path} ends ({format_time(end_ns)})",
+                hint=f"the days in their order; to replay only what is not known yet: --start {format_time(end_ns)}",
+            )
 
     def require_same(self, settings: Settings) -> None:
         """UsageError for settings that differ from the earlier replay's, by name."""

@@ -205,7 +205,7 @@ class Writing:
 
     def _time_of_state(self, waiting_ns: Ints) -> int:
         """When the state is logged: not before what is new, lest a result span the time between two replays."""
-        if self._is_known_to_all and self.nodes:
+        if self._is_known_to_all and self._newest_ns:
             return self._newest_ns
         return int(waiting_ns.min()) if len(waiting_ns) else self._newest_ns
 
@@ -226,7 +226,9 @@ class Writing:
                 latest[kept.node] = Estimate.restored(kept.node, level, state)
 
     def _follow(self, made: Round, nodes: Sequence[Node]) -> None:
-        self.nodes, self._newest_ns = nodes, made.newest_ns
+        self.nodes = nodes
+        if made.estimates:
+            self._newest_ns = made.newest_ns
         if self._is_new:
             self._write(made)
         for estimate in made.estimates:

@@ -185,7 +185,7 @@ class ScanWindow:
         for name in ("stamp", "log", "sweep", "frame"):
             entries[name] = state[name]
         entries["recording"] = -1  # before those that are read now
-        stops = [*state["starts"][1:], len(entries)]
+        stops = [*state["starts"], len(entries)][1:]
         for i, (values, start, stop) in enumerate(zip(state["kinds"], state["starts"], stops, strict=True)):
             kind, ranges, run = Kind(*values), state[f"ranges{i}"], slice(start, stop)
             self._hold(entries[run], ranges, kind)
