@@ -18,7 +18,13 @@ if TYPE_CHECKING:
     from timemap_cli.checks.verdict import CheckedCase, Verdict
     from timemap_cli.results.reader import ResultReader
 
-_FORMATS = ("text", "json", "junit", "github", "markdown")
+_HEADS = {  # each format, and how a file of it begins
+    "text": (b"passed ", b"failed ", b"error "),
+    "json": (b'{\n  "schema": "timemap.check/',),
+    "junit": (b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="timemap check"',),
+    "github": (b"::notice ", b"::warning ", b"::error "),
+    "markdown": (b"### ",),
+}
 _USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite regression.yaml"
 
 
@@ -75,6 +81,9 @@ def check(
     from timemap_cli.checks.tolerances import parsed
     from timemap_cli.checks.verdict import exit_code_of
 
+    if updates and (formats or html):
+        unused = "--format" if formats else "--html"
+        raise UsageError(f"{unused} does not go with --update-baseline: nothing is checked then", hint=_USES)
     wanted, limits = _wanted(formats), parsed(tolerances)
     if suite is not None:
         _require_alone(suite, sources, baseline, {**replaying, "html": html})
@@ -146,8 +155,8 @@ def _wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
     wanted: list[tuple[str, Path | None]] = []
     for word in formats or ("text",):
         name, _, file = word.partition("=")
-        if name not in _FORMATS:
-            raise UsageError(f"unknown format {name}", hint=f"one of {', '.join(_FORMATS)}")
+        if name not in _HEADS:
+            raise UsageError(f"unknown format {name}", hint=f"one of {', '.join(_HEADS)}")
         wanted.append((name, Path(file) if file else None))
     if sum(file is None for _, file in wanted) > 1:
         raise UsageError("standard output takes one format", hint="--format junit=junit.xml --format github")
@@ -165,10 +174,20 @@ def _tell(
         if file is None:
             terminal.result(text)
         else:
-            file.write_text(text, encoding="utf-8")
+            _write(file, form, text)
         if form == "github" and (summary := terminal.variables.get("GITHUB_STEP_SUMMARY")):
             with Path(summary).open("a", encoding="utf-8") as stream:
                 stream.write(_formatted("markdown", cases) + "\n")
+
+
+def _write(path: Path, form: str, text: str) -> None:
+    """Write what a check says into a file of its own, in place of what an earlier check said there."""
+    from timemap_cli.results.atomic_file import AtomicFile
+
+    may_replace = begins_with(*_HEADS[form])
+    with AtomicFile(path, force=True, may_replace=may_replace, replaced=f"the {form} of a check") as file:
+        file.write((text.rstrip("\n") + "\n").encode())
+        file.commit()
 
 
 def _formatted(form: str, cases: "Sequence[CheckedCase]") -> str:
