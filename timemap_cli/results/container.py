@@ -68,7 +68,7 @@ class ResultFile:
         """Text of an attachment."""
         for attachment in self._guarded(lambda: list(self._reader.iter_attachments())):
             if attachment.name == name:
-                return attachment.data.decode()
+                return self._guarded(attachment.data.decode)
         raise self._damaged(f"{name} is missing")
 
     def messages(self, topics: Collection[str], until_ns: int | None = None) -> Iterator[tuple[str, bytes]]:
