@@ -1,8 +1,8 @@
 """Replays that are stopped at random moments: what was there before must stay readable and as it was.
 
-`make kill-bench`, or `python -m benchmarks.stopped_replays [--kills 50] [--others 10] [LOG ...]`. Each replay writes over an
-earlier result with --force and is stopped by `kill -9`, or by Ctrl-C, SIGTERM or SIGHUP. Judged afterwards: the result
-in its place, what lies beside it, the exit code, what was said, and whether the second process is gone.
+`make kill-bench`, or `python -m benchmarks.stopped_replays [--kills 50] [--others 10] [LOG ...]`. Each replay
+writes over an earlier result with --force and is stopped by `kill -9`, Ctrl-C, SIGTERM or SIGHUP. Judged afterwards:
+the result in its place, what lies beside it, the exit code, what was said, and whether the second process is gone.
 """
 
 import random
