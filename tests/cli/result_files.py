@@ -62,7 +62,9 @@ def write(
                     for lv in levels
                 }
                 writer.write_maps(latest, nodes, stamp_ns)
-        writer.finish({"nodes": str(len(nodes))} | (metadata or {}), "seed: 0\n", report or NO_REPORT, changes)
+        writer.finish(
+            {"nodes": str(len(nodes))} | (metadata or {}), "seed: 0\n", report or NO_REPORT, changes
+        )
     return path
 
 
