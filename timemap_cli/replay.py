@@ -173,7 +173,7 @@ def _require_some_use(
         frame = plan.selection.map_frame
         raise UsageError(
             f"{message} (--nodes {nodes}: none is near enough)",
-            hint=f"nodes where the robot drives, in metres of the frame '{frame}'",
+            hint=f"nodes where the robot drives, in metres of the frame {frame!r}",
         )
     raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
 

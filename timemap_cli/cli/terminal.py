@@ -44,11 +44,11 @@ class Terminal:
 
     def warn(self, text: str) -> None:
         """Say that something is not as it should be, while the work goes on."""
-        self._say(f"{self._painted('warning:', _YELLOW)} {_harmless(text)}")
+        self._say(f"{self._painted('warning:', _YELLOW)} {_one_line(text)}")
 
     def error(self, error: TimemapError) -> None:
         """Say what went wrong and, below it, what to try."""
-        self._say(f"{self._painted('error:', _RED)} {_harmless(error.message)}")
+        self._say(f"{self._painted('error:', _RED)} {_one_line(error.message)}")
         self.hint(error.hint)
 
     def hint(self, lines: str | None) -> None:
@@ -79,6 +79,11 @@ def _harmless(text: str) -> str:
     A terminal would take them for orders: colours, titles, what stood there before.
     """
     return _CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
+
+def _one_line(text: str) -> str:
+    """A sentence, in which a name may hold line feeds: what follows one must not look like our own words."""
+    return _harmless(text).replace("\n", "\\n")
 
 
 def _drop(stream: TextIO) -> None:
