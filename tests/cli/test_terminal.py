@@ -90,5 +90,5 @@ def test_a_line_feed_in_a_name_forges_no_line():
 
 def test_letters_of_all_languages_are_left_alone():
     here = terminal()
-    here.result("/größe\t廊下 \N{ROBOT FACE}\nпривет")
-    assert here.stdout.getvalue() == "/größe\t廊下 \N{ROBOT FACE}\nпривет\n"
+    here.result("/größe\t廊下 \N{ROBOT FACE}\nที่ว่าง")
+    assert here.stdout.getvalue() == "/größe\t廊下 \N{ROBOT FACE}\nที่ว่าง\n"
