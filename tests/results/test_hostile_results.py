@@ -187,3 +187,12 @@ def test_messages_that_no_replay_writes_are_damage(sound, tmp_path, messages):
 @pytest.mark.parametrize("without", [STATUS, channels.TF_STATIC, channels.CHANGES, channels.CONFIG])
 def test_what_is_missing_is_damage(sound, tmp_path, without):
     assert is_damaged(rewritten(sound, tmp_path / "r.mcap", without=(without,)))
+
+
+def test_a_chunk_that_claims_to_unpack_to_more_than_any_replay_writes_is_damage(sound, monkeypatch):
+    monkeypatch.setattr("timemap_cli.results.container._MOST_BYTES", 1000)
+    told = timemap("diff", sound, "--level", "long", "mid")
+    assert (told.code, told.err.splitlines()[0]) == (
+        1,
+        f"error: {sound} is damaged: its records do not fit together",
+    )
