@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.changes.rooms import RADIUS, Box, estimate, ring
+from tests.changes.rooms import RADIUS, Box, compare_rings, estimate, ring
 from timemap_cli.changes.difference import Kind
 from timemap_cli.changes.events import Turn
+from timemap_cli.changes.track import Track
 from timemap_cli.changes.tracker import Tracker
 from timemap_cli.model.nodes import Node
 
@@ -208,6 +209,20 @@ def test_the_place_that_a_moved_thing_left_is_no_event_of_its_own():
     house.round([aside], long=[board], renewed=[0])
     house.round([], long=[board], renewed=[1])
     assert house.event.kind is Kind.MOVED
+
+
+def test_the_second_of_two_things_of_one_kind_can_be_dropped():
+    both = compare_rings(ring(HERE, [BOX, OTHER]), ring(HERE))
+    first, second = (Track.of(change, LEVELS) for change in both.changes)
+    assert (first.kind, len(first.points)) != (
+        second.kind,
+        len(second.points),
+    )  # arrays that cannot be compared
+    assert first.kind is second.kind
+    tracker = Tracker(LEVELS, RADIUS)
+    tracker._tracks += [first, second]
+    tracker._drop(second)
+    assert [one is first for one in tracker._tracks] == [True]
 
 
 def test_somebody_in_front_of_a_thing_does_not_undo_it(house):
