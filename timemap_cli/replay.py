@@ -74,20 +74,22 @@ def replay(
     began = time.perf_counter()
     with ExitStack() as stack:
         earlier = _earlier(resume, settings)
+        if earlier is not None:
+            stack.enter_context(earlier.damage_told())
         recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
         plan = _surveyed(recordings, settings, earlier)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        observer, tracker = assembly.observer(settings, given), assembly.tracker(settings)
-        observing = Observing(recordings, plan, observer, earlier.reading if earlier else None)
-        writing = Writing(result, tracker)
-        learning = partial(assembly.learner, settings, given)
-        if earlier is not None:
-            writing.restore(earlier.parts(), observer.nodes)
-            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
+        observing = Observing(recordings, plan, assembly.observer(settings, given))
+        writing = Writing(result, assembly.tracker(settings))
         start_ns, end_ns = _span_ns(plan, start, end)
         if earlier is not None:
             earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+            observing.restore(earlier.reading)
+            writing.restore(earlier.parts(), observing.nodes)
+        learning = partial(assembly.learner, settings, given)
+        if earlier is not None:
+            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
         steps = observing.steps(start_ns, end_ns)
         for answer in stack.enter_context(closing(mapped(learning, steps))):
             if isinstance(answer, Kept):
@@ -117,7 +119,7 @@ def _earlier(resume: Path | None, settings: Settings) -> Earlier | None:
 def _surveyed(recordings: Sequence[Recording], settings: Settings, earlier: Earlier | None) -> Survey:
     if earlier is None:
         return survey(recordings, settings)
-    return survey(recordings, earlier.settings_to_read_by(), earlier.known)
+    return survey(recordings, earlier.to_read_by, earlier.known)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
