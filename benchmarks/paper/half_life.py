@@ -117,9 +117,8 @@ class _Scene:
         """Share of what is known that is new, and of the nodes that show it (angle_bins,)."""
         found = estimate(self._memory.recall(self._nodes), STATE_WIDTH)
         shows_new = np.abs(found.ranges.astype(np.int64) - _NEW) < (_OLD - _NEW) // 2
-        known = found.support + 1 - found.plausibility
-        share = np.where(shows_new, found.support, known - found.support)
-        return float(share.sum() / known.sum()), np.asarray(shows_new.mean(axis=0))
+        new = found.known * np.where(shows_new, found.support, 1 - found.support)
+        return float(new.sum() / found.known.sum()), np.asarray(shows_new.mean(axis=0))
 
 
 def measured(level: Level, steps: _Steps, seen: float, nodes: int) -> Ratio:

@@ -46,10 +46,8 @@ class Experiment:
     def share_of_new(self):
         """Share that the new range has in what is known, over all angle bins and nodes."""
         found = estimate(self.memory.recall(np.arange(NODES)), 0.1)
-        known = (found.support + 1 - found.plausibility)[:, ::2]
-        new = np.where(
-            found.ranges[:, ::2] == round(NEW * 1000), found.support[:, ::2], known - found.support[:, ::2]
-        )
+        known, support = found.known[:, ::2], found.support[:, ::2]
+        new = known * np.where(found.ranges[:, ::2] == round(NEW * 1000), support, 1 - support)
         return float(new.sum() / known.sum())
 
     def estimate_is_new(self):
@@ -169,5 +167,5 @@ def test_scans_that_do_not_see_an_angle_bin_leave_its_estimate():
     experiment.show(np.nan, 400)
     found = estimate(experiment.memory.recall(np.arange(NODES)), 0.1)
     assert (found.ranges[:, ::2] == 3000).all()
-    assert found.support[:, ::2].max() < 0.01  # but little of the window still speaks for it
-    assert found.plausibility == pytest.approx(1.0)  # and nothing against it
+    assert found.known[:, ::2].max() < 0.01  # but little of the window still speaks of it
+    assert found.support[:, ::2] == pytest.approx(1.0)  # and nothing against it
