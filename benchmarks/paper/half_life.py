@@ -220,9 +220,9 @@ def _sentences(nodes: int, numbers: dict[str, float]) -> tuple[str, ...]:
         "*Window*: when half of what the level knows is new. *Estimate*: when half "
         "of the angle bins show it. Both by the half-life that was stated: 1.00 is right. Neighbours are "
         "seen together where both are seen, and each angle bin in all, three "
-        f"quarters or half of the scans. Means over {nodes} nodes, of windows below {_MANY} over more. In time, an absence "
-        "counts 10 s: the last three rows are scans 0.5 and 5 s apart in turns, with a day between every ten, and one in "
-        "ten minutes.",
+        f"quarters or half of the scans. Means over {nodes} nodes, of windows below {_MANY} over more. In time, an "
+        "absence counts 10 s: the last three rows are scans 0.5 and 5 s apart in turns, with a day between "
+        "every ten, and one in ten minutes.",
         f"Window {numbers['window least']:.2f} to {numbers['window most']:.2f}, estimate "
         f"{numbers['estimate least']:.2f} to {numbers['estimate most']:.2f} (bar: 0.9 to 1.1).",
         "Seen without its neighbour for ten half-lives, then with it for ten, an angle bin shows the new "
