@@ -68,7 +68,7 @@ class Draw:
     def __init__(self, level: Level) -> None:
         self._level = level
         self._reached = np.zeros(0, np.int64)  # scans that reached the level
-        self._all_due = np.zeros(0, np.int64)  # places due for them in all [2^-32]
+        self._all_due = np.zeros(0, np.int64)  # of what was due for them and a scan could fill [2^-32]
         self._sum = np.zeros(0, np.int64)  # of their shares [2^-32]
         self._next = np.zeros(0, np.int64)  # first turn in which no scan was taken yet
         self._stamp = np.zeros(0, np.int64)  # [ns] the newest scan that reached the level
@@ -107,13 +107,13 @@ class Draw:
     def _shares(self, groups: Groups, stamps_ns: Ints) -> Ints:
         """Share of a turn that each scan fills [2^-32]: while the memory is young as much as any other before it.
 
-        Else four scans would decide a memory of a hundred places. It is young until all that was due would have
-        filled the window: in time a scan's own due says little, for it may be a hundredth of the next one's.
+        Else four scans would decide a memory of a hundred places. It is young until all that was due has
+        filled a window: in time a scan's own due says little, for it may be a hundredth of the next one's.
         """
         reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
         due = self._due(groups, stamps_ns)
-        all_due = groups.running_sums(np.asarray(np.rint(due * _ONE), np.int64), self._all_due)
         granted = self._granted_to(groups, due)
+        all_due = groups.running_sums(np.asarray(np.rint(granted * _ONE), np.int64), self._all_due)
         self._wanted += float(due.sum())
         self._granted += float(granted.sum())
         window = self._level.window
