@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.state import State
+
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
@@ -27,3 +29,16 @@ class Estimate:
     def plausibility(self) -> npt.NDArray[np.float32]:
         """Share of the level's window that does not contradict the estimate (angle_bins,), 0..1."""
         return np.asarray(1 - self.known * (1 - self.support), np.float32)
+
+    def kept(self) -> State:
+        """Everything but the node and the level, for `restored`."""
+        arrays = (self.ranges, self.support, self.known, self.samples, self.status, self.last_seen_ns)
+        return {"stamp_ns": self.stamp_ns, **dict(zip(_ARRAYS, arrays, strict=True))}
+
+    @classmethod
+    def restored(cls, node: int, level: str, state: State) -> "Estimate":
+        """The estimate that was kept."""
+        return cls(node, level, state["stamp_ns"], *(state[name] for name in _ARRAYS))
+
+
+_ARRAYS = ("ranges", "support", "known", "samples", "status", "last_seen_ns")
