@@ -41,7 +41,7 @@ def test_intel_has_missing_returns_that_are_no_evidence(name):
     )
     assert found.no_return == "ignore"
     assert found.contradicted > 0.5
-    assert found.beams[0, "/scan"].found == ("no return: 81.83 m",)
+    assert found.beams[0, "/scan"].found == ("no return: 81.83 m (the scanner's own code)",)
 
 
 def test_the_three_forms_of_intel_are_surveyed_alike():

@@ -9,9 +9,7 @@ ARM_M = 2.0  # a turn counts as it moves what stands so far away
 SPEED, TURN_RATE = 3.0, 6.3  # [m/s], [rad/s] what no robot indoors exceeds
 
 
-def jumps(
-    buffer: TransformBuffer, target: str, source: str, first_ns: Int64s, last_ns: Int64s
-) -> Float64s:
+def jumps(buffer: TransformBuffer, target: str, source: str, first_ns: Int64s, last_ns: Int64s) -> Float64s:
     """How far (n,) [m] `source` jumps in `target` between the transforms that enclose the times from first to last.
 
     The largest over the moving edges of the chain. An edge to an odometry frame (map -> odom) should stand still: its
@@ -39,6 +37,8 @@ def _moved(older: Float64s, newer: Float64s, seconds: Float64s | float = 0.0) ->
     """How far (n,) [m] a pose (n, 3, 4) moves in the plane, and by its turn, beyond what a robot moves in so long."""
     step = newer - older
     way = np.sqrt(step[:, 0, 3] ** 2 + step[:, 1, 3] ** 2)
-    turn = np.sqrt((step[:, :, :3] ** 2).sum(axis=(1, 2)) / 2)  # 2 sin(angle / 2): by how much a point at 1 m moves
+    turn = np.sqrt(
+        (step[:, :, :3] ** 2).sum(axis=(1, 2)) / 2
+    )  # 2 sin(angle / 2): by how much a point at 1 m moves
     moved: Float64s = np.maximum(way - SPEED * seconds, 0) + ARM_M * np.maximum(turn - TURN_RATE * seconds, 0)
     return moved

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,17 @@ class PoseQuality:
 
     position_std: Float64s  # (n,) [m] in the worst direction; NaN where unknown
     yaw_std: Float64s  # (n,) [rad]; NaN where unknown
-    jump: Float64s  # (n,) [m] between the transforms around the pose, see ``TransformBuffer.jumps``
+    jump: Float64s  # (n,) [m] between the transforms around the pose, see ``jumps``
+
+    def rows(self, rows: Bools) -> PoseQuality:
+        """That of these poses alone."""
+        return PoseQuality(self.position_std[rows], self.yaw_std[rows], self.jump[rows])
+
+    @classmethod
+    def joined(cls, parts: Sequence[PoseQuality]) -> PoseQuality:
+        """That of all poses of the parts."""
+        columns = ([getattr(part, name) for part in parts] for name in ("position_std", "yaw_std", "jump"))
+        return cls(*(np.concatenate([*column, np.empty(0)]) for column in columns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +46,48 @@ class PoseLimits:
         return {UNCERTAIN: uncertain, JUMP: _beyond(quality.jump, self.jump) & ~uncertain}
 
 
+NO_LIMITS = PoseLimits()
+
+
 def _beyond(values: Float64s, limit: float) -> Bools:
     return np.asarray(values > limit) if limit else np.zeros(len(values), np.bool_)
+
+
+@dataclass(frozen=True, slots=True)
+class PoseReport:
+    """How good the poses of a topic's scans are."""
+
+    covariances: str | None  # topic that tells how uncertain they are
+    position_std: float | None  # [m] the largest; None: unknown
+    yaw_std: float | None  # [rad]
+    jumps: int  # larger than the limit: runs of scans that were set aside for it
+    largest_jump: float  # [m] of those; 0 if there are none
+    largest_jump_ns: int  # stamp of the first scan within it
+    set_aside: Mapping[str, int]  # scans by reason
+
+
+def report(
+    stamps_ns: Int64s, quality: PoseQuality, limits: PoseLimits, covariances: str | None
+) -> PoseReport:
+    """Sum up the quality of the poses at the stamps (n,), in any order."""
+    order = np.argsort(stamps_ns, kind="stable")
+    stamps, jump = stamps_ns[order], quality.jump[order]
+    within = _beyond(jump, limits.jump)
+    worst = int(np.argmax(jump)) if within.any() else None
+    return PoseReport(
+        covariances,
+        _largest(quality.position_std),
+        _largest(quality.yaw_std),
+        int(np.count_nonzero(np.diff(within, prepend=False) & within)),
+        0.0 if worst is None else float(jump[worst]),
+        0 if worst is None else int(stamps[worst]),
+        {reason: int(np.count_nonzero(worse)) for reason, worse in limits.set_aside(quality).items()},
+    )
+
+
+def _largest(values: Float64s) -> float | None:
+    known = values[~np.isnan(values)]
+    return float(known.max()) if len(known) else None
 
 
 class Deviations:

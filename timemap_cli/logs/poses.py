@@ -48,7 +48,7 @@ class PoseSource:
     def __init__(self, map_frame: str, topic: str = TF, covariances: str | None = None) -> None:
         self._map_frame = map_frame.lstrip("/")
         self._topic = None if topic == TF else topic
-        self._covariances = covariances
+        self.covariances = covariances
         self._deviations = Deviations()
         self._child: str | None = None
         self._buffer = TransformBuffer()
@@ -63,7 +63,7 @@ class PoseSource:
         if isinstance(batch, TransformBatch):
             self._buffer.add(batch)
             return
-        if batch.topic == self._covariances:
+        if batch.topic == self.covariances:
             self._deviations.add(batch)
         if batch.topic == self._topic:
             self._child = batch.child_frame_id or self._child

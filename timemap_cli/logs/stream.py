@@ -18,7 +18,7 @@ from timemap_cli.logs.batches import (
 from timemap_cli.logs.beams import Beams, settle
 from timemap_cli.logs.history import Bools
 from timemap_cli.logs.interleave import NEVER_NS, Recorded, interleaved, joined
-from timemap_cli.logs.pose_quality import PoseLimits
+from timemap_cli.logs.pose_quality import NO_LIMITS, PoseLimits
 from timemap_cli.logs.poses import PoseSource, transform_topics
 from timemap_cli.logs.scan_window import (
     BEGINNING_NS,
@@ -74,7 +74,7 @@ def sweeps(
     start_ns: int | None = None,
     end_ns: int | None = None,
     drives: Sequence[Sequence[int]] | None = None,
-    limits: PoseLimits = PoseLimits(),
+    limits: PoseLimits = NO_LIMITS,
 ) -> Iterator[Sweeps | EndOfRecording]:
     """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
 
@@ -252,7 +252,7 @@ class _Drive:
         good = np.ones(len(entries), dtype=bool)
         for frame, code in self._frame_codes.items():
             rows = np.flatnonzero(entries["frame"] == code)
-            if len(rows) and self._limits != PoseLimits():
+            if len(rows) and self._limits != NO_LIMITS:
                 quality = self._poses.quality(frame, entries["stamp"][rows], entries["sweep"][rows])
                 for reason, worse in self._limits.set_aside(quality).items():
                     self._counts.drop(reason, int(np.count_nonzero(worse)))

@@ -97,9 +97,7 @@ def survey_sample(
         *_short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
-    return Survey(
-        selection, beams, missing, problems, spans_ns, sample.drives, pose_limits(settings.gate)
-    )
+    return Survey(selection, beams, missing, problems, spans_ns, sample.drives, pose_limits(settings.gate))
 
 
 def pose_limits(gate: GateSettings) -> PoseLimits:
