@@ -99,7 +99,8 @@ def test_an_unknown_key_names_the_nearest_known_one(overrides, unknown, nearest)
 def test_an_unknown_key_far_from_all_others_lists_those_of_its_place():
     assert (
         refusal({"gate": {"qqqq": 1}}).hint
-        == "one of min_travel, min_turn_deg, min_interval, max_contradiction"
+        == "one of min_travel, min_turn_deg, min_interval, max_contradiction, max_position_std, max_yaw_std_deg, "
+        "max_jump"
     )
 
 
@@ -222,7 +223,7 @@ def test_the_paper_profile_has_the_numbers_of_the_paper_no_gate_and_no_guard():
     settings = load(None, {"profile": "paper"})
     assert settings.map.angle_bins == 360
     assert settings.map.range_bin * 20 == pytest.approx(settings.map.radius) == 1.5
-    assert settings.gate == GateSettings(0.0, 0.0, 0.0, max_contradiction=1.0)
+    assert settings.gate == GateSettings(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     assert settings.profile == "paper"
 
 

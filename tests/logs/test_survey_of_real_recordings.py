@@ -86,7 +86,7 @@ def test_a_simulator_without_noise_shows_no_codes():
 def test_a_scanner_in_a_hall_shows_its_range_max():
     (log,) = inspected("edge_cases/pr2_mylaserdata.bag").logs
     assert log.scans[0].beams.no_return == 19808
-    assert log.scans[0].found == ("no return: 10 m",)
+    assert log.scans[0].found == ("no return: 10 m (range_max, in 97 % of the beams)",)
 
 
 @pytest.mark.parametrize(
