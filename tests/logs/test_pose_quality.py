@@ -133,7 +133,7 @@ def test_what_exceeds_a_limit_is_set_aside_for_one_reason_and_what_is_unknown_is
 def test_a_limit_of_zero_is_none():
     assert set_aside() == {"uncertain_pose": [False] * 5, "pose_jump": [False] * 5}
     assert set_aside(jump=0.5)["pose_jump"] == [False, False, True, False, True]
-    assert NO_LIMITS == PoseLimits()
+    assert PoseLimits() == NO_LIMITS
 
 
 def test_a_report_has_the_largest_deviations_and_the_jumps():
