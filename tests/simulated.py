@@ -9,7 +9,7 @@ import numpy as np
 
 from sample_logs.building import building
 from sample_logs.laser import Mount, Scanner
-from sample_logs.robot import Motion, compose, drive, invert
+from sample_logs.robot import compose, drive, invert
 from tests.logs.recorded import ROS2, START_NS, Message, odometry, pose_with_covariance, scan, transforms
 
 WORLD = building(0.0, ())
@@ -19,7 +19,10 @@ PERIOD, SWEEP = 0.1, 0.075  # [s] of scans, and from first to last beam
 STILL = (0.0, 0.0, 0.0, 1.0)
 
 
-def scanner(mount=Mount(0.1, 0.0, 0.2, 0.0), first_deg=-180.0, step_deg=1.0, beams=360, **more):
+MOUNT = Mount(0.1, 0.0, 0.2, 0.0)
+
+
+def scanner(mount=MOUNT, first_deg=-180.0, step_deg=1.0, beams=360, **more):
     """One that measures exactly, to the millimetre, out to 12 m."""
     plain = {"period": PERIOD, "sweep_time": SWEEP, "range_min": 0.05, "range_max": 12.0}
     exact = {"noise": 0.0, "missing": 0.0}
@@ -57,7 +60,15 @@ def static(*scanners) -> Message:
 
 def numbers(pose):
     """x, y, z and the quaternion of a planar pose (3,)."""
-    return float(pose[0]), float(pose[1]), 0.0, 0.0, 0.0, float(np.sin(pose[2] / 2)), float(np.cos(pose[2] / 2))
+    return (
+        float(pose[0]),
+        float(pose[1]),
+        0.0,
+        0.0,
+        0.0,
+        float(np.sin(pose[2] / 2)),
+        float(np.cos(pose[2] / 2)),
+    )
 
 
 def moving(period=0.05, begin=0.0, parent="map") -> Iterable[Message]:

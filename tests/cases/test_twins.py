@@ -78,7 +78,9 @@ def shares(one, other, tolerance_m):
     assert one.keys() == other.keys()
     differing, lonely = [], []
     for level in ("short", "mid", "long"):
-        a, b = (np.concatenate([found[key] for key in sorted(one) if key[0] == level]) for found in (one, other))
+        a, b = (
+            np.concatenate([found[key] for key in sorted(one) if key[0] == level]) for found in (one, other)
+        )
         known = ~np.isnan(a) & ~np.isnan(b)
         with np.errstate(invalid="ignore"):  # both clear
             same = (a == b) | (np.abs(a - b) <= tolerance_m)
@@ -143,3 +145,30 @@ def test_the_poses_of_amcl_are_interpolated(folder, twin):
     made = scanner()
     found = mapped(folder, in_base(made), amcl(), scans(made))
     assert_same_map(found, twin, SURFACE_M, AT_EDGES / 2)
+
+
+CORNERS = {"first_deg": -135.0, "beams": 271}
+ENDS = {"first_deg": -90.0, "beams": 181}
+
+
+@pytest.mark.parametrize(
+    ("front", "rear", "unseen"),
+    [
+        (
+            scanner(Mount(0.25, 0.2, 0.2, 45.0), **CORNERS),
+            scanner(Mount(-0.25, -0.2, 0.2, -135.0), **CORNERS),
+            ALMOST_NONE,
+        ),
+        # What lies beside the robot, between the two half circles, is seen when it has driven on.
+        (scanner(Mount(0.3, 0.0, 0.2, 0.0), **ENDS), scanner(Mount(-0.3, 0.0, 0.2, 180.0), **ENDS), AT_EDGES),
+    ],
+    ids=["corners", "ends"],
+)
+def test_front_and_rear_laser_feed_one_map(folder, twin, front, rear, unseen):
+    """Each stands 0.3 m beside the twin's and sees past an edge on its own side: two angle bins at each of them."""
+    mounts = [static((front, "front"), (rear, "rear"))]
+    both = scans(front, "/front", "front"), scans(rear, "/rear", "rear", begin=0.55)
+    found = mapped(folder, mounts, moving(), *both, scan_topics=["/front", "/rear"])
+    differing, lonely = shares(found, twin, SURFACE_M)
+    assert differing <= 2 * AT_EDGES
+    assert lonely <= unseen

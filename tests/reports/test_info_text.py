@@ -110,18 +110,6 @@ def test_poses_of_which_nothing_is_known_are_not_talked_about():
     assert info_text(replace(INTEL, logs=(log,))) == info_text(INTEL)
 
 
-def test_of_several_scanners_each_has_its_own_missing_returns():
-    both = replace(INTEL.selection, scan_topics=("/front", "/rear"))
-    tests = {"/front": MissingReturns(900, 0.9), "/rear": MissingReturns(700, 0.1)}
-    told = info_text(replace(INTEL, selection=both, missing_returns=tests)).splitlines()
-    rows = [line.strip() for line in told if "no return  /" in line]
-    assert rows == [
-        "no return  /front: no evidence: 90 % of those sampled pass through something solid "
-        "(glass, mirrors, black surfaces)",
-        "no return  /rear: free space: 10 % of those sampled pass through something solid",
-    ]
-
-
 def test_small_shares_are_not_rounded_to_nothing_nor_large_ones_to_all():
     beams = BeamCounts(hit=1_000_000, no_return=1, invalid=2)
     told = info_text(replace(INTEL, logs=(replace(LOG, scans=(replace(SCAN, beams=beams),)),)))

@@ -2,7 +2,8 @@
 
 A robot that sees 180 degrees seldom sees the node that it stands beside. But a near node may as well stand on the
 other side of a wall. The way is free where the robot stands, where this scan or one of those shortly before it saw
-past, and where the robot itself has just driven.
+past, and where the robot itself has just driven. Several scanners of a robot look to different sides: what one has
+seen counts for the others.
 """
 
 import math
@@ -23,6 +24,7 @@ KEPT_VIEWS = 16  # so many earlier scans are looked at ...
 KEPT_TRAVEL = 0.2  # [m] ... each so far from the one before it ...
 KEPT_TURN = math.radians(30)  # ... or turned by so much
 LONGEST_MOVE = 2.0  # [m] between two scans; more is a jump of the pose, or a gap in the recording
+LONGEST_PAUSE_NS = 1_000_000_000  # between scans of two scanners, in which the robot stays where it is
 
 _STEPS = 24  # of a way
 _CELL = math.radians(2)  # of a view; a narrower gap is not seen through
@@ -88,6 +90,7 @@ class _Fan:
 class _Trail:
     """What a scanner saw on its way here."""
 
+    fan: _Fan
     kept: _Views
     x: float  # [m] where the newest scan was taken
     y: float
@@ -107,7 +110,7 @@ class FreeWays:
         """
         fan = _Fan.of(sweeps.bearings)
         views = _Views(*_placed(sweeps), fan.depths(sweeps))
-        kept, begin, end = self._keep(sweeps, views)
+        kept, begin, end = self._keep(sweeps, views, fan)
         way = _points(views.origin, centres)
         passed = _inside(way, views, fan)
         doubtful = np.flatnonzero(~passed.all(axis=1))
@@ -116,13 +119,17 @@ class FreeWays:
             if not len(doubtful):
                 break
             passed[doubtful] |= _inside(way[doubtful], kept.rows(end[doubtful] - back), fan)
+        for scanner, trail in self._trails.items():
+            if scanner != sweeps.scanner:
+                doubtful = np.flatnonzero(~passed.all(axis=1))
+                passed[doubtful] |= _seen_by_another(trail, sweeps.rows(doubtful), way[doubtful])
         return np.asarray(passed.all(axis=1))
 
-    def _keep(self, sweeps: Sweeps, views: _Views) -> tuple[_Views, Ints, Ints]:
+    def _keep(self, sweeps: Sweeps, views: _Views, fan: _Fan) -> tuple[_Views, Ints, Ints]:
         """The views kept before and in this block, and which of them each scan may look at: [begin, end) (n,)."""
         trail = self._trails.get(sweeps.scanner)
         if trail is None or trail.kept.depth.shape[1] != views.depth.shape[1]:
-            trail = _Trail(views.rows(slice(0, 0)), math.inf, math.inf, 0)
+            trail = _Trail(fan, views.rows(slice(0, 0)), math.inf, math.inf, 0)
         chosen: list[int] = []
         begin, end = np.zeros(len(sweeps), np.int64), np.zeros(len(sweeps), np.int64)
         first, before = 0, len(trail.kept.origin)
@@ -139,7 +146,7 @@ class FreeWays:
             x, y, stamp_ns = row[0], row[1], now_ns
         kept = trail.kept.then(views.rows(np.array(chosen, np.int64)))
         stays = slice(max(first, len(kept.origin) - KEPT_VIEWS), None)
-        self._trails[sweeps.scanner] = _Trail(kept.rows(stays), x, y, stamp_ns)
+        self._trails[sweeps.scanner] = _Trail(fan, kept.rows(stays), x, y, stamp_ns)
         return kept, begin, end
 
 
@@ -162,6 +169,34 @@ def _points(origin: Floats, centres: Floats) -> Floats:
     """Points (n, steps + 1, 2) [m, map frame] from the laser to the node."""
     part = np.arange(_STEPS + 1)[:, None] / _STEPS
     return np.asarray(origin[:, None] + part * (centres - origin)[:, None])
+
+
+def _seen_by_another(trail: _Trail, sweeps: Sweeps, way: Floats) -> Bools:
+    """Steps (n, steps) of each scan's way that another scanner of the robot has seen free until now.
+
+    The robot itself lies between the two: there is no wall.
+    """
+    lasers = sweeps.map_from_laser_first[:, :2, 3]
+    there = np.array((trail.x, trail.y))
+    passed = np.zeros((len(way), _STEPS), np.bool_)
+    since_ns = sweeps.stamps_ns - trail.stamp_ns
+    away = np.sqrt(((lasers - there) ** 2).sum(axis=1))
+    rows = np.flatnonzero((since_ns >= 0) & (away <= LONGEST_MOVE))
+    for one in range(len(trail.kept.origin) if len(rows) else 0):
+        passed[rows] |= _inside(way[rows], trail.kept.rows(np.full(len(rows), one)), trail.fan)
+    rows = rows[since_ns[rows] <= LONGEST_PAUSE_NS]
+    passed[rows] |= _between(way[rows], lasers[rows, None], there)
+    return passed
+
+
+def _between(way: Floats, one: Floats, other: Floats) -> Bools:
+    """Steps (n, steps) of each way whose two ends lie as near to the line from one place to the other as the robot."""
+    along = other - one
+    length = (along**2).sum(axis=2)
+    share = ((way - one) * along).sum(axis=2) / np.where(length > 0, length, 1)
+    foot = one + np.clip(share, 0, 1)[..., None] * along
+    holds = ((way - foot) ** 2).sum(axis=2) <= ROBOT_RADIUS**2
+    return np.asarray(holds[:, :-1] & holds[:, 1:])
 
 
 def _inside(way: Floats, views: _Views, fan: _Fan) -> Bools:

@@ -111,10 +111,8 @@ def _outlook(inspection: Inspection) -> list[str]:
     if inspection.span_ns is not None:
         begin, end = map(_to_the_millisecond, inspection.span_ns)
         rows.append(("stamps", f"{begin} to {end}, the time that --start and --end mean"))
-    several = len(selection.scan_topics) > 1
-    for topic in selection.scan_topics:
-        found = _no_return(inspection.missing_returns.get(topic), inspection.no_return)
-        rows.append(("no return", f"{topic}: {found}" if several else found))
+    found = [inspection.missing_returns.get(topic) for topic in selection.scan_topics]
+    rows += [("no return", _no_return(test, inspection.no_return)) for test in found]
     rows += _list("warning", selection.warnings)
     rows += _list("problem", inspection.problems)
     return ["A replay would use", *_columns(rows)]
