@@ -101,15 +101,15 @@ def settle(sample: Sequence[ScanBatch]) -> Beams:
     range_max = np.concatenate([batch.range_max for batch in sample])
     range_min = _range_min(sample)
     nominal, words = _nominal(range_max)
-    at_range_max = False
-    if words == VARIES:
-        at_range_max = _repeats_range_max(sample)
-        if at_range_max:
-            words = f"{VARIES} and stands for a missing return"
-        elif _is_largest_of_scan(sample):
-            words = "range_max is the largest range of each scan: not used"
     codes = _codes(sample, range_min, nominal)
     threshold = codes[-1].begin if codes else float("inf")
+    at_range_max = False
+    if words == VARIES:
+        at_range_max = _repeats_range_max(sample, threshold)
+        if at_range_max:
+            words = f"{VARIES} and stands for a missing return"
+        elif _is_largest_of_scan(sample, threshold):
+            words = "range_max is the largest range of each scan: not used"
     beams = Beams(range_min, threshold, at_range_max, 0.0, True, ())
     clear_range, doubt = _clear_range(beams, sample, nominal)
     found = (*_codes_in_words(sample, codes), *_low_codes_in_words(sample, range_min), words, doubt)
@@ -132,19 +132,25 @@ def _nominal(range_max: Float32s) -> tuple[float | None, str]:
     return None, VARIES
 
 
-def _is_largest_of_scan(sample: Sequence[ScanBatch]) -> bool:
-    """Whether range_max is the largest range of each scan."""
+def _is_largest_of_scan(sample: Sequence[ScanBatch], threshold: float) -> bool:
+    """Whether range_max is the largest range of each scan; what `threshold` [m] and more stands for is none."""
     equal, scans = 0, 0
     for batch in sample:
-        finite = np.where(np.isfinite(batch.ranges), batch.ranges, np.float32(0))
+        finite = np.where(batch.ranges < np.float32(threshold), batch.ranges, np.float32(0))
         equal += int(np.count_nonzero(np.isclose(finite.max(axis=1, initial=0), batch.range_max, rtol=SAME)))
         scans += len(batch.range_max)
     return equal >= 0.9 * scans
 
 
-def _repeats_range_max(sample: Sequence[ScanBatch]) -> bool:
-    """Whether a range_max that differs from scan to scan is shared by more beams than a far corner has."""
-    equal = sum(int(np.count_nonzero(batch.ranges >= batch.range_max[:, None])) for batch in sample)
+def _repeats_range_max(sample: Sequence[ScanBatch], threshold: float) -> bool:
+    """Whether a range_max that differs from scan to scan is shared by more beams than a far corner has.
+
+    Beams that show a code, from `threshold` [m] on, are missing anyway.
+    """
+    equal = 0
+    for batch in sample:
+        reached = (batch.ranges >= batch.range_max[:, None]) & (batch.ranges < np.float32(threshold))
+        equal += int(np.count_nonzero(reached))
     scans = sum(len(batch.range_max) for batch in sample)
     beams = sum(batch.ranges.size for batch in sample)
     return equal > 3 * scans and equal > 0.01 * beams
