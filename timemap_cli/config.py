@@ -69,7 +69,7 @@ class GateSettings:
     max_contradiction: float = setting(
         0.75, Number(0.5, 1.0), "a scan that contradicts so much of a place is of a lost robot; 1: off"
     )
-    # amcl starts from 0.5 m and 15 deg, and converges to a third of that.
+    # amcl starts from 0.5 m and 15 deg, and is far below that once it tracks.
     max_position_std: float = setting(
         0.5, Number(0.0, 1000.0, "m"), "a scan whose pose is less certain is not learnt; 0: off"
     )
