@@ -7,6 +7,7 @@ seen counts for the others.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,33 +98,55 @@ class _Trail:
     stamp_ns: int
 
 
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What n scans of one scanner know of the ways around them."""
+
+    sweeps: Sweeps
+    fan: _Fan
+    views: _Views  # of the scans themselves
+    kept: _Views  # of the scanner, until now
+    begin: Ints  # (n,) the first of those that a scan may look at
+    end: Ints  # (n,) behind the last of them
+    others: Sequence[_Trail]  # of the robot's other scanners
+
+    def free(self, rows: Ints, centres: Floats) -> Bools:
+        """Whether the way from the laser to the node centre (k, 2) [m, map frame] is free, of the scans `rows` (k,)."""
+        views = self.views.rows(rows)
+        way = _points(views.origin, centres)
+        passed = _inside(way, views, self.fan)
+        begin, end = self.begin[rows], self.end[rows]
+        doubtful = np.flatnonzero(~passed.all(axis=1))
+        for back in range(1, KEPT_VIEWS + 1):
+            doubtful = doubtful[~passed[doubtful].all(axis=1) & (end[doubtful] - back >= begin[doubtful])]
+            if not len(doubtful):
+                break
+            passed[doubtful] |= _inside(way[doubtful], self.kept.rows(end[doubtful] - back), self.fan)
+        for trail in self.others:
+            doubtful = np.flatnonzero(~passed.all(axis=1))
+            passed[doubtful] |= _seen_by_another(trail, self.sweeps.rows(rows[doubtful]), way[doubtful])
+        return np.asarray(passed.all(axis=1))
+
+    def are_blocked(self, rows: Ints, centres: Floats) -> Bools:
+        """Whether the scans `rows` (k,) hit something between the laser and the centre (k, 2) [m, map frame]."""
+        views = self.views.rows(rows)
+        offset = (centres - views.origin)[:, None]
+        depth, distance = _towards(offset[..., 0], offset[..., 1], views, self.fan)
+        return np.asarray((depth >= 0) & (depth < distance))[:, 0]
+
+
 class FreeWays:
     """Remembers, for each scanner, the views of the last few metres."""
 
     def __init__(self) -> None:
         self._trails: dict[int, _Trail] = {}
 
-    def free(self, sweeps: Sweeps, centres: Floats) -> Bools:
-        """Whether the way from the laser to the node centre (n, 2) [m, map frame] is free, for each of n scans (n,).
-
-        Blocks must come in stamp order.
-        """
+    def look(self, sweeps: Sweeps) -> "Outlook":
+        """What the scans of a block know of the ways around them. Blocks must come in stamp order."""
         fan = _Fan.of(sweeps.bearings)
         views = _Views(*_placed(sweeps), fan.depths(sweeps))
-        kept, begin, end = self._keep(sweeps, views, fan)
-        way = _points(views.origin, centres)
-        passed = _inside(way, views, fan)
-        doubtful = np.flatnonzero(~passed.all(axis=1))
-        for back in range(1, KEPT_VIEWS + 1):
-            doubtful = doubtful[~passed[doubtful].all(axis=1) & (end[doubtful] - back >= begin[doubtful])]
-            if not len(doubtful):
-                break
-            passed[doubtful] |= _inside(way[doubtful], kept.rows(end[doubtful] - back), fan)
-        for scanner, trail in self._trails.items():
-            if scanner != sweeps.scanner:
-                doubtful = np.flatnonzero(~passed.all(axis=1))
-                passed[doubtful] |= _seen_by_another(trail, sweeps.rows(doubtful), way[doubtful])
-        return np.asarray(passed.all(axis=1))
+        others = [trail for scanner, trail in self._trails.items() if scanner != sweeps.scanner]
+        return Outlook(sweeps, fan, views, *self._keep(sweeps, views, fan), others)
 
     def _keep(self, sweeps: Sweeps, views: _Views, fan: _Fan) -> tuple[_Views, Ints, Ints]:
         """The views kept before and in this block, and which of them each scan may look at: [begin, end) (n,)."""
@@ -206,10 +229,17 @@ def _inside(way: Floats, views: _Views, fan: _Fan) -> Bools:
     """
     dx, dy = (way[:, :, axis] - views.origin[:, None, axis] for axis in (0, 1))
     holds = dx * dx + dy * dy <= ROBOT_RADIUS**2
+    depth, distance = _towards(dx, dy, views, fan)
+    with np.errstate(invalid="ignore"):
+        holds |= depth > distance
+    return np.asarray(holds[:, :-1] & holds[:, 1:])
+
+
+def _towards(dx: Floats, dy: Floats, views: _Views, fan: _Fan) -> tuple[npt.NDArray[np.float32], Floats]:
+    """How far each view saw towards points (n, k) [m, from the laser, map frame], and how far they are in its plane."""
     (xx, xy), (yx, yy) = views.along.transpose(1, 2, 0)[..., None]
     upright = xx * yy - xy * yx
     with np.errstate(divide="ignore", invalid="ignore"):  # a laser whose plane is vertical sees no way
         u, v = (yy * dx - xy * dy) / upright, (xx * dy - yx * dx) / upright
         cell = fan.cells_towards(u, v)
-        holds |= np.take_along_axis(views.depth, cell, axis=1) > np.sqrt(u * u + v * v)
-    return np.asarray(holds[:, :-1] & holds[:, 1:])
+        return np.take_along_axis(views.depth, cell, axis=1), np.sqrt(u * u + v * v)
