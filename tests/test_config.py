@@ -42,7 +42,13 @@ def test_the_defaults_are_those_that_served_best_on_real_recordings():
         ("long", 100, "200obs"),
     ]
     assert settings.gate == GateSettings(
-        min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.15, max_contradiction=0.75
+        min_travel=0.05,
+        min_turn_deg=5.0,
+        min_interval_s=0.15,
+        max_contradiction=0.75,
+        max_position_std=0.5,
+        max_yaw_std_deg=20.0,
+        max_jump=0.5,
     )
     assert settings.estimate.every == Span(30.0, "s")
     assert settings.input == InputSettings((), "map", "auto", "auto", 0.05)
@@ -121,6 +127,9 @@ def test_a_file_is_named_in_what_is_said_about_it(tmp_path):
         ("gate", "min_travel", 0.0, 100.0, " m"),
         ("gate", "min_turn_deg", 0.0, 180.0, " deg"),
         ("gate", "max_contradiction", 0.5, 1.0, ""),
+        ("gate", "max_position_std", 0.0, 1000.0, " m"),
+        ("gate", "max_yaw_std_deg", 0.0, 360.0, " deg"),
+        ("gate", "max_jump", 0.0, 1000.0, " m"),
         ("input", "max_dropped", 0.0, 1.0, ""),
     ],
 )
