@@ -9,7 +9,8 @@ from timemap_cli.logs import stream
 from timemap_cli.logs.beams import Beams
 from timemap_cli.logs.pose_quality import PoseLimits
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.stream import ScanCounts, sweeps
+from timemap_cli.model.sweeps import Sweeps
 
 BEAMS = Beams(0.1, 30.0, False, 30.0, True, ())
 LIMITS = PoseLimits(0.5, 0.3, 0.5)
@@ -35,7 +36,7 @@ def replayed(lists, limits=LIMITS, pose="tf"):
     counts = ScanCounts()
     chosen = Selection(("/scan",), "map", pose, covariances="/amcl_pose")
     out = sweeps([FakeRecording(lists)], chosen, {(0, "/scan"): BEAMS}, counts, limits=limits)
-    blocks = [block for block in out if not isinstance(block, EndOfRecording)]
+    blocks = [block for block in out if isinstance(block, Sweeps)]
     return [stamp / 1e9 for block in blocks for stamp in block.stamps_ns.tolist()], counts
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from timemap_cli.logs.batches import Float64s, Int64s, PoseBatch
 from timemap_cli.logs.history import MAX_GAP_NS, MAX_SAMPLES, Bools
+from timemap_cli.model.state import State
 
 UNCERTAIN, JUMP = "uncertain_pose", "pose_jump"  # reasons for setting a scan aside
 
@@ -125,6 +126,14 @@ class Deviations:
         found = np.fmax(self._values[older], self._values[newer])
         found[older < 0] = np.nan
         return found[:, 0], found[:, 1]
+
+    def kept(self) -> State:
+        """All of them, for `restore`."""
+        return {"stamps_ns": self._stamps, "values": self._values}
+
+    def restore(self, state: State) -> None:
+        """Take over what others kept; there must be none yet."""
+        self._stamps, self._values = state["stamps_ns"], state["values"]
 
     def forget(self, before_ns: int) -> None:
         """Drop what stamps from ``before_ns`` on do not need."""

@@ -13,6 +13,7 @@ from timemap_cli.logs.jumps import jumps
 from timemap_cli.logs.pose_quality import Deviations, PoseQuality
 from timemap_cli.logs.rigid import compose
 from timemap_cli.logs.transforms import TransformBuffer
+from timemap_cli.model.state import State, prefixed, without_prefix
 
 TF = "tf"  # what a selection says where poses come from the transforms
 TRANSFORM_TYPES = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
@@ -107,6 +108,20 @@ class PoseSource:
         return PoseQuality(
             *self._deviations.at(stamps_ns), jumps(self._buffer, self._map_frame, moving, first_ns, last_ns)
         )
+
+    def kept(self) -> State:
+        """Poses and moving transforms, for `restore`."""
+        return {
+            "child": self._child,
+            **self._buffer.kept(),
+            **prefixed("deviations", self._deviations.kept()),
+        }
+
+    def restore(self, state: State) -> None:
+        """Take over what another source kept; this one must have nothing but static transforms."""
+        self._child = state["child"]
+        self._buffer.restore(state)
+        self._deviations.restore(without_prefix("deviations", state))
 
     def forget(self, before_ns: int) -> None:
         """Drop what look-ups from ``before_ns`` on do not need."""

@@ -19,8 +19,8 @@ class Placement:
     def __init__(self, spacing: float, given: Sequence[Node] = ()) -> None:
         """`spacing` [m]: a scan farther than this from every node makes one, unless all nodes are given."""
         self.nodes = list(given)
-        self._spacing = spacing
         self.all_given = bool(given)
+        self._spacing = spacing
 
     @property
     def centres(self) -> Floats:
