@@ -158,3 +158,10 @@ def test_poses_that_do_not_jump_tell_of_none():
         0.0,
         {"uncertain_pose": 0, "pose_jump": 0},
     )
+
+
+def test_what_is_kept_for_a_later_replay_says_the_same():
+    deviations, resumed = held(stated([1, 2, 3], [0.1, 0.3, 0.2])), Deviations()
+    resumed.restore(deviations.kept())
+    resumed.add(stated([4], [0.4]))
+    assert position(resumed, [1.5, 3.5]) == [0.3, 0.4]

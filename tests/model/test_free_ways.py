@@ -144,6 +144,14 @@ def test_what_one_scanner_saw_counts_for_the_other():
     assert not known(FreeWays(), last, (-1.0, 1.0))[0]
 
 
+def test_what_one_scanner_saw_in_an_earlier_replay_counts_for_the_other():
+    ways, resumed = FreeWays(), FreeWays()
+    scans = drive(HALL, along((-2, 1), (0, 1)), fan(61, 60))
+    ways.look(scans)
+    resumed.restore(ways.kept())
+    assert known(resumed, of_scanner(scans.rows(slice(-1, None)), 1), (-1.0, 1.0))[0]
+
+
 @pytest.mark.parametrize("changed", ["earlier", "elsewhere"])
 def test_what_another_scanner_saw_does_not_count_after_a_jump_or_when_the_clock_begins_anew(changed):
     ways = FreeWays()
