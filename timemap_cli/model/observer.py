@@ -145,10 +145,11 @@ class Observer:
             hidden = self._judge(seen, rows[seen.nodes[rows] != NO_NODE], sweeps, ways)
             hidden = hidden[ways.are_blocked(hidden, self._placement.centres_of(seen.nodes[hidden]))]
             hidden = self._judge_farther(seen, hidden, known[hidden - begin], places, sweeps, ways)
-            if not len(hidden) or self._placement.all_given:
+            number = int(known[hidden[0] - begin]) if len(hidden) else 0
+            if not len(hidden) or not self._placement.may_insert(number):
                 break
             begin = int(hidden[0])
-            self._placement.insert(places[begin], int(known[begin - rows[0]]))
+            self._placement.insert(places[begin], number)
         return seen
 
     def _judge(self, seen: "_Seen", rows: Ints, sweeps: Sweeps, ways: Outlook) -> Ints:

@@ -11,6 +11,8 @@ Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
 NO_NODE = -1
+_PAIRS_AT_ONCE = 1 << 20  # bounds the memory
+MOST_NODES = 10_000  # bounds the memory; the aisles of a hall of 100 m by 100 m need half of them
 
 
 class Placement:
@@ -34,52 +36,71 @@ class Placement:
     def assign(self, places: Floats) -> tuple[Ints, Ints]:
         """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order; how many there were then (n,).
 
-        NO_NODE if none is near, or the place is not finite.
+        NO_NODE if none is near and none may be made: all are given, there are MOST_NODES, or the place is not finite.
         """
-        chosen = np.full(len(places), NO_NODE)
+        chosen, squared = self._nearest(places)
         known = np.full(len(places), len(self.nodes))
+        finite = np.asarray(np.isfinite(places).all(axis=1))
         start = 0
-        while start < len(places):
-            nearest, near = self._nearest(places[start:])
-            chosen[start:] = np.where(near, nearest, NO_NODE)
-            far = np.flatnonzero(~near & np.isfinite(places[start:]).all(axis=1))
-            if self.all_given or not len(far):
+        while not self.all_given and len(self.nodes) < MOST_NODES:
+            far = np.flatnonzero(~(squared[start:] <= self._spacing**2) & finite[start:])
+            if not len(far):
                 break
             start += int(far[0])
-            self._make(places[start])
+            centre = self._make(places[start])
+            new = _squared_distances(places[start:], centre[None])[:, 0]
+            nearer = start + np.flatnonzero(~(squared[start:] <= new))
+            chosen[nearer], squared[nearer] = len(self.nodes) - 1, new[nearer - start]
             known[start:] = len(self.nodes)
-        return chosen, known
+        return np.where(squared <= self._spacing**2, chosen, NO_NODE), known
 
     def farther(self, places: Floats, known: Ints, choice: int) -> tuple[npt.NDArray[np.bool_], Ints]:
         """Whether a place (n, 2) has so many nearer nodes and one more within reach (n,), and the number of that (n,).
 
         `choice`: 1 for the second nearest. Only the first `known` (n,) nodes count.
         """
-        if len(self.nodes) <= choice:
-            return np.zeros(len(places), np.bool_), np.full(len(places), NO_NODE)
-        squared = self._squared(places)
-        squared[np.arange(len(self.nodes)) >= known[:, None]] = np.inf
-        node = np.argsort(squared, axis=1, kind="stable")[:, choice]
-        return squared[np.arange(len(places)), node] <= self._spacing**2, node
+        near, node = np.zeros(len(places), np.bool_), np.full(len(places), NO_NODE)
+        centres = self.centres
+        at_once = max(1, _PAIRS_AT_ONCE // max(1, len(centres)))
+        for begin in range(0, len(places) if len(centres) > choice else 0, at_once):
+            part = slice(begin, begin + at_once)
+            squared = _squared_distances(places[part], centres)
+            squared[np.arange(len(centres)) >= known[part, None]] = np.inf
+            node[part] = np.argsort(squared, axis=1, kind="stable")[:, choice]
+            near[part] = squared[np.arange(len(squared)), node[part]] <= self._spacing**2
+        return near, node
+
+    def may_insert(self, number: int) -> bool:
+        """Whether a node of this number may be made."""
+        return not self.all_given and number < MOST_NODES
 
     def insert(self, place: Floats, number: int) -> None:
         """Make a node at a place (2,), to be the node of this number; what was made from there on is undone."""
         del self.nodes[number:]
         self._make(place)
 
-    def _make(self, place: Floats) -> None:
-        # whole millimetres: a node's centre is a key of its random numbers
+    def _make(self, place: Floats) -> Floats:
+        """Make a node and return its centre (2,): whole millimetres, as it is a key of its random numbers."""
         x, y = (round(value, 3) for value in place.tolist())
         self.nodes.append(Node(x, y))
+        return np.array([x, y])
 
-    def _nearest(self, places: Floats) -> tuple[Ints, npt.NDArray[np.bool_]]:
+    def _nearest(self, places: Floats) -> tuple[Ints, Floats]:
+        """Nearest node (n,) of each place and the square of how far it is [m^2]; NO_NODE, inf if there is none."""
+        chosen, squared = np.full(len(places), NO_NODE), np.full(len(places), np.inf)
         if not self.nodes:
-            return np.zeros(len(places), np.int64), np.zeros(len(places), np.bool_)
-        squared = self._squared(places)
-        nearest = squared.argmin(axis=1)
-        return nearest, squared[np.arange(len(places)), nearest] <= self._spacing**2
+            return chosen, squared
+        centres = self.centres
+        at_once = max(1, _PAIRS_AT_ONCE // len(centres))
+        for begin in range(0, len(places), at_once):
+            some = _squared_distances(places[begin : begin + at_once], centres)
+            nearest = some.argmin(axis=1)
+            chosen[begin : begin + at_once] = nearest
+            squared[begin : begin + at_once] = some[np.arange(len(some)), nearest]
+        return chosen, squared
 
-    def _squared(self, places: Floats) -> Floats:
-        """Squares of the distances (n, nodes) [m^2] from places (n, 2) to all nodes."""
-        dx, dy = (places[:, None, axis] - self.centres[:, axis] for axis in (0, 1))
-        return np.asarray(dx * dx + dy * dy)
+
+def _squared_distances(places: Floats, centres: Floats) -> Floats:
+    """(places, centres) [m^2]."""
+    dx, dy = (places[:, None, axis] - centres[:, axis] for axis in (0, 1))
+    return np.asarray(dx * dx + dy * dy)
