@@ -6,7 +6,6 @@ a hang, more than 1 GB of memory, or a result that looks complete and is not.
 
 import sys
 from collections import Counter
-from pathlib import Path
 
 import click
 
@@ -20,7 +19,9 @@ from benchmarks.damage.workers import run
 @click.option("--cases", default=20_000, show_default=True, help="Over all formats.")
 @click.option("--seed", default=0, show_default=True)
 @click.option("--format", "names", multiple=True, type=click.Choice(tuple(FORMATS)), help="Only this format.")
-@click.option("--from", "first", default=0, show_default=True, help="Number of the first case of each format.")
+@click.option(
+    "--from", "first", default=0, show_default=True, help="Number of the first case of each format."
+)
 @click.option("--workers", default=2, show_default=True)
 @click.option("--sentences", is_flag=True, help="Print what was said, and how often.")
 def main(cases: int, seed: int, names: tuple[str, ...], first: int, workers: int, sentences: bool) -> None:

@@ -58,7 +58,8 @@ def _ranges(pose: Floats) -> np.ndarray[Any, np.dtype[np.float32]]:
     with np.errstate(divide="ignore"):
         to_x = (np.copysign(ROOM[0], np.cos(bearings)) - x) / np.cos(bearings)
         to_y = (np.copysign(ROOM[1], np.sin(bearings)) - y) / np.sin(bearings)
-    return np.minimum(to_x, to_y).astype(np.float32)
+    ranges: np.ndarray[Any, np.dtype[np.float32]] = np.minimum(to_x, to_y).astype(np.float32)
+    return ranges
 
 
 def _bag(path: Path, compression: str) -> Path:
@@ -113,7 +114,7 @@ def _rewrite(source: Path, target: Path, **options: Any) -> None:
             writer.add_message(
                 channels[channel.id], message.log_time, message.data, message.publish_time, message.sequence
             )
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
 
 
 _NO_SUMMARY: dict[str, Any] = {

@@ -52,7 +52,9 @@ def _started(name: str, numbers: Sequence[int], seed: int) -> Connection:
 
 def _work(name: str, numbers: Sequence[int], seed: int, sender: Connection) -> None:
     # On one processor a replay is done in this process alone, whose memory is measured.
-    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))} if os.getpid() % 2 else {max(os.sched_getaffinity(0))})
+    os.sched_setaffinity(
+        0, {min(os.sched_getaffinity(0))} if os.getpid() % 2 else {max(os.sched_getaffinity(0))}
+    )
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE))
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(name, Path(folder))

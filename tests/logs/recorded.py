@@ -49,7 +49,6 @@ def header(store, stamp_ns: int, frame: str) -> Any:
 def scan(store, stamp_ns: int, ranges: Sequence[float], frame: str = "laser", **values: Any) -> Any:
     given = {
         "angle_min": -1.0,
-        "angle_max": 1.0,
         "angle_increment": 0.5,
         "time_increment": 0.001,
         "scan_time": 0.1,
@@ -57,6 +56,7 @@ def scan(store, stamp_ns: int, ranges: Sequence[float], frame: str = "laser", **
         "range_max": 30.0,
         "intensities": np.zeros(0, np.float32),
     } | values
+    given.setdefault("angle_max", given["angle_min"] + given["angle_increment"] * (len(ranges) - 1))
     return make(
         store,
         "sensor_msgs/msg/LaserScan",

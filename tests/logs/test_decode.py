@@ -172,7 +172,7 @@ def test_messages_cut_short_are_counted_and_the_others_read(encoding, cut):
     raws = [serialised(store, content) for content in contents]
     raws[1] = raws[1][:cut]
     found = decode_raws(connection(store, "sensor_msgs/msg/LaserScan"), raws)
-    assert BadBatch("/topic", "malformed", 1) in found
+    assert BadBatch("/topic", "undecodable", 1) in found
     messages = [("/topic", index, contents[index]) for index in (0, 2, 3)]
     assert rows([one for one in found if not isinstance(one, BadBatch)]) == expected_rows(messages)
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import zstandard
 from ruamel.yaml import YAML
@@ -15,6 +17,8 @@ from ruamel.yaml.error import YAMLError
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.logs.bag_file import BagFile
+from timemap_cli.logs.bounds import MOST_CHUNK_BYTES
+from timemap_cli.logs.foreign_errors import FOREIGN_ERRORS, reason
 from timemap_cli.logs.mcap_file import McapFile
 from timemap_cli.logs.raw import Storage
 from timemap_cli.logs.sqlite_file import SqliteFile
@@ -28,6 +32,10 @@ READERS: dict[bytes, Callable[[Path], Storage]] = {
 }
 READABLE = "a ROS 1 bag, a ROS 2 bag (its folder or a file of it) or an MCAP file"
 METADATA = "metadata.yaml"
+MOST_METADATA_BYTES = 16 << 20
+# A compressed file is unpacked on the disk: to so many times its size, and so many bytes at least.
+MOST_TIMES, LEAST_BYTES = 200, 64 << 20
+BLOCK_BYTES = 1 << 20
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
 
@@ -46,30 +54,57 @@ def open_files(path: Path, stack: ExitStack) -> OpenFiles:
     ``stack`` closes them. Raises UsageError where there is no recording, and what the readers raise.
     """
     if path.is_dir():
-        paths, problems, remarks = _files_of_folder(path)
+        listed = _files_of_folder(path)
     elif path.exists():
-        paths, problems, remarks = [path], [], []
+        listed = _Listed([path])
     else:
         raise no_such_file(path, READABLE)
-    storages = [_open_file(one, stack) for one in paths]
+    paths, problems = listed.paths, list(listed.problems)
+    storages: list[Storage] = []
+    for one in paths:
+        try:
+            storages.append(_open_file(one, stack))
+        except (TimemapError, *FOREIGN_ERRORS) as error:
+            # Of several files of a recording the others are read.
+            if len(paths) == 1 or isinstance(error, ResultGivenError):
+                raise
+            problems.append(f"{one.name} cannot be read and is left out: {reason(error, one)}")
+    if not storages:
+        raise UsageError(f"{path} holds no recording that can be read ({'; '.join(problems)})", hint=READABLE)
     storages.sort(key=lambda storage: storage.start_ns)
-    return OpenFiles(storages, problems, remarks)
+    return OpenFiles(storages, problems or _shortfalls(listed.counts, storages), listed.remarks)
+
+
+def _shortfalls(announced: Mapping[str, int], storages: Sequence[Storage]) -> list[str]:
+    """A sentence for every topic of which the metadata of a folder announces more than its files hold."""
+    held: Counter[str] = Counter()
+    for one in (connection for storage in storages for connection in storage.connections):
+        held[one.topic] += one.count
+    return [
+        f"{METADATA} announces {count} messages of {topic}, and {held[topic]} are there"
+        for topic, count in announced.items()
+        if held[topic] < count
+    ]
+
+
+class ResultGivenError(UsageError):
+    """A result of ours is given as a recording."""
 
 
 def _open_file(path: Path, stack: ExitStack) -> Storage:
-    head = _head(path)
+    head, source, damage = _head(path), path, ""
     if head.startswith(ZSTD_MAGIC):
-        unpacked = _decompressed(path, stack)
-        head, source = _head(unpacked), unpacked
-    else:
-        source = path
+        source, damage = _decompressed(path, stack)
+        head = _head(source)
     reader = _reader(head)
     if reader is None:
-        raise _refusal(path, head)
+        raise _refusal(path, head, damage)
     storage = reader(source)
     stack.callback(storage.close)
+    if damage:
+        storage.problems.insert(0, damage)
     if isinstance(storage, McapFile) and RESULT_RECORD in storage.metadata_names:
-        raise UsageError(
+        raise ResultGivenError(
             f"{path} is a result of timemap, not a recording",
             hint=f"timemap diff {path} --level long mid",
         )
@@ -85,8 +120,10 @@ def _head(path: Path) -> bytes:
         return file.read(32)
 
 
-def _refusal(path: Path, head: bytes) -> TimemapError:
+def _refusal(path: Path, head: bytes, damage: str) -> TimemapError:
     """What to say about a file that is no recording we read."""
+    if damage:
+        return TimemapError(f"{path} cannot be read: {damage}")
     if old := OLD_BAG.match(head):
         version = old.group(1).decode()
         return UsageError(
@@ -97,23 +134,42 @@ def _refusal(path: Path, head: bytes) -> TimemapError:
     return UsageError(f"{path} is not a recording: {reason}", hint=READABLE)
 
 
-def _decompressed(path: Path, stack: ExitStack) -> Path:
-    """The file without its compression, in a temporary folder that ``stack`` removes."""
+def _decompressed(path: Path, stack: ExitStack) -> tuple[Path, str]:
+    """The file without its compression, in a temporary folder that ``stack`` removes, and what is wrong with it."""
     folder = stack.enter_context(TemporaryDirectory(prefix="timemap-"))
     target = Path(folder) / path.stem
+    most = max(LEAST_BYTES, MOST_TIMES * path.stat().st_size)
     with path.open("rb") as packed, target.open("wb") as unpacked:
-        zstandard.ZstdDecompressor().copy_stream(packed, unpacked)
-    return target
+        reader = zstandard.ZstdDecompressor(max_window_size=MOST_CHUNK_BYTES).stream_reader(packed)
+        try:
+            while block := reader.read(BLOCK_BYTES):
+                if unpacked.tell() + len(block) > most:
+                    return target, f"it unpacks to more than {most} bytes, and no more are read"
+                unpacked.write(block)
+        except zstandard.ZstdError as error:
+            return target, f"its compression is damaged ({error}); what comes before is read"
+    return target, ""
 
 
-def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
-    """The storage files of a bag folder, those its metadata names or all where it has none; problems and remarks."""
+@dataclass(frozen=True, slots=True)
+class _Listed:
+    """The files of a recording, and how many messages of each topic its metadata announces."""
+
+    paths: Sequence[Path]
+    problems: Sequence[str] = ()
+    remarks: Sequence[str] = ()
+    counts: Mapping[str, int] = field(default_factory=dict)
+
+
+def _files_of_folder(folder: Path) -> _Listed:
+    """The storage files of a bag folder, those its metadata names or all where it has none."""
     try:
-        names = _listed_names(folder / METADATA)
+        content = _metadata(folder / METADATA)
+        names = _listed_names(content)
     except FileNotFoundError:
-        return _found_files(folder), [], []
-    except (YAMLError, UnicodeDecodeError, KeyError, TypeError):
-        return _found_files(folder), [], [f"{METADATA} cannot be read; all files beside it are"]
+        return _Listed(_found_files(folder))
+    except (YAMLError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return _Listed(_found_files(folder), remarks=[f"{METADATA} cannot be read; all files beside it are"])
     paths, problems = [], []
     for name in names:
         # Older rosbag2 names a compressed file without the suffix it gave it.
@@ -122,14 +178,37 @@ def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
             paths.append(present[0])
         else:
             problems.append(f"{name} is missing, although {METADATA} names it")
-    if not paths:
-        raise UsageError(f"{folder} holds none of the files that its {METADATA} names")
-    return paths, problems, []
+    if paths:
+        return _Listed(paths, problems, counts=_counts(content))
+    try:
+        found = _found_files(folder)
+    except UsageError as error:
+        raise UsageError(f"{folder} holds none of the files that its {METADATA} names") from error
+    return _Listed(
+        found, remarks=[f"{METADATA} names other files; those beside it are read"], counts=_counts(content)
+    )
 
 
-def _listed_names(metadata: Path) -> list[str]:
-    content = YAML(typ="safe").load(metadata.read_text(encoding="utf-8"))
-    return [PurePath(name).name for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
+def _metadata(path: Path) -> Any:
+    if path.stat().st_size > MOST_METADATA_BYTES:
+        raise ValueError("it is too large")
+    return YAML(typ="safe").load(path.read_text(encoding="utf-8"))["rosbag2_bagfile_information"]
+
+
+def _listed_names(content: Any) -> list[str]:
+    """Names of the files, without the folders in front of them: they lead out of no recording."""
+    names = content["relative_file_paths"]
+    found = [PurePath(name).name for name in names] if isinstance(names, list) else []
+    return list(dict.fromkeys(name for name in found if name and "\0" not in name))
+
+
+def _counts(content: Any) -> dict[str, int]:
+    """How many messages of each topic the metadata announces; empty where it cannot be understood."""
+    try:
+        topics = content["topics_with_message_count"]
+        return {one["topic_metadata"]["name"]: int(one["message_count"]) for one in topics}
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return {}
 
 
 def _found_files(folder: Path) -> list[Path]:
