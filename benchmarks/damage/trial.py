@@ -21,7 +21,7 @@ from timemap_cli.results.reader import ResultReader
 
 MOST_MB = 1024  # resident, of the whole process
 # Every dropped scan counts as loss here: six seconds are too short for a share.
-SETTINGS = "input: {max_dropped: 0}\n"
+OPTIONS = ("--max-dropped", "0", "--json")
 
 
 class Verdict(StrEnum):
@@ -71,7 +71,6 @@ class Bench:
     def __init__(self, name: str, folder: Path) -> None:
         self.name = name
         self._folder = folder
-        (folder / "settings.yaml").write_text(SETTINGS)
         (folder / "good").mkdir()
         self._good = FORMATS[name](folder / "good" / "run")
         self.expected = self._replay(self._good)
@@ -104,9 +103,7 @@ class Bench:
         result = self._folder / "result.mcap"
         result.unlink(missing_ok=True)
         out, err = io.StringIO(), io.StringIO()
-        settings = str(self._folder / "settings.yaml")
-        args = ["replay", str(recording), "-o", str(result), "--config", settings, "--json"]
-        code = main(args, Terminal(out, err, {}))
+        code = main(["replay", str(recording), "-o", str(result), *OPTIONS], Terminal(out, err, {}))
         return Outcome(code, out.getvalue(), err.getvalue(), _digest(result) if code in (0, 3) else None)
 
     def _judge(self, found: Outcome) -> tuple[Verdict, str]:

@@ -170,6 +170,8 @@ class BagFile:
         except (DamagedBagError, struct.error):
             self.problems.append(_cut_off(position, size, spans))
         else:
+            if not spans:
+                self.problems.append("it is damaged, and no message is left in it")
             self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
         return found, spans
 

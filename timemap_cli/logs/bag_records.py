@@ -15,6 +15,7 @@ from timemap_cli.logs.raw import Bytes, Connection, Int64s, ros2_name, windows
 MESSAGE, BAG_HEADER, INDEX, CHUNK, CHUNK_INFO, CONNECTION = 2, 3, 4, 5, 6, 7  # values of a record's op
 SECOND_NS = 1_000_000_000
 SMALL_BYTES = 1 << 20
+LARGEST_FILE = 1 << 62  # no position is beyond
 INDEX_ENTRY = np.dtype([("sec", "<u4"), ("nsec", "<u4"), ("offset", "<u4")])
 
 _uint32 = struct.Struct("<I")
@@ -39,11 +40,14 @@ class Record:
     @property
     def op(self) -> int:
         """What kind of record it is; 0 where it does not say."""
-        return self.fields.get("op", b"\0")[0]
+        return (self.fields.get("op") or b"\0")[0]
 
     def number(self, name: str) -> int:
         """An unsigned number in the header; DamagedBagError where it is missing."""
-        return int.from_bytes(self.bytes(name), "little")
+        value = int.from_bytes(self.bytes(name)[:9], "little")
+        if value >= 1 << 64:
+            raise DamagedBagError(f"a record's {name!r} is no number")
+        return value
 
     def time_ns(self, name: str) -> int:
         """A time in the header [ns]."""
@@ -74,6 +78,8 @@ def header_fields(header: bytes) -> Fields:
 
 def file_record(file: IO[bytes], position: int) -> Record:
     """The record at this place of the file, its data left where it is; DamagedBagError where there is none."""
+    if position >= LARGEST_FILE:
+        raise DamagedBagError("it is cut off")
     file.seek(position)
     (header_length,) = _uint32.unpack(_read(file, 4))
     fields = header_fields(_read(file, header_length))

@@ -33,7 +33,10 @@ def chunk_content(record: bytes) -> bytes:
         raise DamagedChunkError("there is no chunk")
     if len(record) != 9 + length:
         raise DamagedChunkError("it is cut off" if len(record) < 9 + length else "its length is wrong")
-    size, crc, content = _unpacked(record)
+    try:
+        size, crc, content = _unpacked(record)
+    except struct.error as error:
+        raise DamagedChunkError("its head is damaged") from error
     if len(content) != size:
         amount = f"more than {size}" if len(content) > size else f"{len(content)} bytes instead of {size}"
         raise DamagedChunkError(f"it holds {amount}")

@@ -79,7 +79,8 @@ def from_summary(file: IO[bytes]) -> Contents | None:
     spans = [_span(index) for index in summary.chunk_indexes]
     if (
         not _lie_apart(spans, size)
-        or max(statistics.message_end_time, *(s.end_ns for s in spans), 0) > LATEST_NS
+        or max(statistics.message_start_time, statistics.message_end_time, *(s.end_ns for s in spans))
+        > LATEST_NS
     ):
         return None
     return Contents(
