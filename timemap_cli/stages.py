@@ -57,6 +57,7 @@ class Observing:
             start_ns=start_ns,
             end_ns=end_ns,
             drives=plan.drives,
+            latest_ns=plan.latest_ns,
         )
         # Two scanners in turn, or bearings that differ from scan to scan, make blocks of one scan.
         waiting: list[Observations] = []

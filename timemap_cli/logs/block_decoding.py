@@ -26,6 +26,7 @@ UNDECODABLE, MALFORMED, MISMATCHED = "undecodable", "malformed", "mismatched"
 MOST_BEAMS = 100_000  # of a scan; the finest scanners have some ten thousand
 SPARE_BEAMS, SPARE_SHARE = 2, 0.05  # by which the beams may differ from what the angles say
 SECOND_NS = 1_000_000_000
+NO_STAMP_NS = -SECOND_NS  # stands for a stamp that is none
 POSE_BYTES = 7 * 8
 COVARIANCE_BYTES = 36 * 8
 SCAN_NUMBERS = 7  # angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max
@@ -52,6 +53,8 @@ def _scans(messages: RawMessages, trace: Trace) -> Iterator[Batch]:
         fits = fits_angles(layout, numbers[alike, 1])
         if not fits.all():
             yield BadBatch(topic, MISMATCHED, int(np.count_nonzero(~fits)))
+            if not fits.any():
+                continue
         chosen = alike[fits]
         part = messages[chosen]
         yield ScanBatch(
@@ -110,11 +113,11 @@ _READERS: dict[Kind, Callable[[RawMessages, Trace], Iterator[Batch]]] = {
 
 
 def _stamps(messages: RawMessages, element: Element) -> Int64s:
-    """Header stamps (n,) [ns]."""
+    """Header stamps (n,) [ns]; where nanoseconds are a second or more, one before all times."""
     words = messages.columns(element.offsets["header.stamp.sec"], 8)
     seconds = words[:, :4].view("<i4")[:, 0].astype(np.int64)
     nanoseconds = words[:, 4:].view("<u4")[:, 0].astype(np.int64)
-    return seconds * SECOND_NS + nanoseconds
+    return np.where(nanoseconds < SECOND_NS, seconds * SECOND_NS + nanoseconds, NO_STAMP_NS)
 
 
 def _same_rows(rows: NDArray[np.uint32]) -> Iterator[tuple[NDArray[np.uint32], NDArray[np.int64]]]:

@@ -35,7 +35,7 @@ METADATA = "metadata.yaml"
 MOST_METADATA_BYTES = 16 << 20
 # A compressed file is unpacked on the disk: to so many times its size, and so many bytes at least.
 MOST_TIMES, LEAST_BYTES = 200, 64 << 20
-BLOCK_BYTES = 1 << 20
+PACKED_BYTES = 4096
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
 
@@ -123,7 +123,7 @@ def _head(path: Path) -> bytes:
 def _refusal(path: Path, head: bytes, damage: str) -> TimemapError:
     """What to say about a file that is no recording we read."""
     if damage:
-        return TimemapError(f"{path} cannot be read: {damage}")
+        return TimemapError(f"{path} cannot be read: {damage.partition(';')[0]}")
     if old := OLD_BAG.match(head):
         version = old.group(1).decode()
         return UsageError(
@@ -139,16 +139,17 @@ def _decompressed(path: Path, stack: ExitStack) -> tuple[Path, str]:
     folder = stack.enter_context(TemporaryDirectory(prefix="timemap-"))
     target = Path(folder) / path.stem
     most = max(LEAST_BYTES, MOST_TIMES * path.stat().st_size)
+    unpacking = zstandard.ZstdDecompressor(max_window_size=MOST_CHUNK_BYTES).decompressobj()
     with path.open("rb") as packed, target.open("wb") as unpacked:
-        reader = zstandard.ZstdDecompressor(max_window_size=MOST_CHUNK_BYTES).stream_reader(packed)
         try:
-            while block := reader.read(BLOCK_BYTES):
-                if unpacked.tell() + len(block) > most:
-                    return target, f"it unpacks to more than {most} bytes, and no more are read"
-                unpacked.write(block)
+            # A few kilobytes hold up to a hundred megabytes.
+            while not unpacking.eof and (block := packed.read(PACKED_BYTES)):
+                unpacked.write(unpacking.decompress(block))
+                if unpacked.tell() > most:
+                    return target, f"it unpacks to more than {most} bytes; what comes before is read"
         except zstandard.ZstdError as error:
             return target, f"its compression is damaged ({error}); what comes before is read"
-    return target, ""
+    return target, "" if unpacking.eof else "it is cut off; what could be unpacked is read"
 
 
 @dataclass(frozen=True, slots=True)

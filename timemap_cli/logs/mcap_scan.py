@@ -115,7 +115,9 @@ class _Scan:
         nameless = sum(count for key, count in self.counts.items() if key not in self.channels)
         if nameless:
             self.problems.append(f"{nameless} messages are of no known channel and left out")
-        remark = f"{self.private} records of a private kind are passed over"
+        remarks = [f"{self.private} records of a private kind are passed over"] if self.private else []
+        if self.data_end and self._bytes(self.size - len(MAGIC), self.size) != MAGIC:
+            remarks.append("its end is missing, as after a crash; all of it is read")
         return Contents(
             schemas=self.schemas,
             channels=self.channels,
@@ -125,7 +127,7 @@ class _Scan:
             end_ns=max((span.end_ns for span in self.spans), default=0),
             metadata_names=frozenset(self.metadata_names),
             problems=tuple(self.problems),
-            remarks=(remark,) if self.private else (),
+            remarks=tuple(remarks),
         )
 
     def _heads(self) -> Iterator[_Head]:

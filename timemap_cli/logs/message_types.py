@@ -97,6 +97,11 @@ HEADER, OLDEST_HEADER = "std_msgs/msg/Header", "roslib/msg/Header"
 DEFAULT_STORES = {"cdr": Stores.ROS2_HUMBLE, "ros1": Stores.ROS1_NOETIC}
 
 
+def is_read(connection: Connection) -> bool:
+    """Whether messages of this type are read, and in this encoding."""
+    return connection.msgtype in MESSAGE_TYPES and connection.encoding in DEFAULT_STORES
+
+
 class DecoderCache:
     """What is known about the types of one recording's connections, found out when first asked for."""
 

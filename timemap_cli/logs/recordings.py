@@ -15,8 +15,9 @@ from timemap_cli.logs.block_decoding import UNDECODABLE
 from timemap_cli.logs.decode import decode
 from timemap_cli.logs.files import open_files
 from timemap_cli.logs.foreign_errors import translated
-from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache
+from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache, is_read
 from timemap_cli.logs.parts import stretches_of_all
+from timemap_cli.logs.raw import Connection
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,8 @@ class Recording:
 
     ``start_ns``, ``end_ns``: log times of the first and the last message, both 0 where there is none.
     ``topics`` are in order of name. ``problems`` are sentences about data that is damaged or missing;
-    reading may add to them. ``remarks`` are about what is odd and costs no data.
+    reading may add to them. ``remarks`` are about what is odd and costs no data. ``unusable`` holds the topics of which
+    some messages read so far gave nothing, and why.
     """
 
     def __init__(self, path: Path) -> None:
@@ -51,15 +53,19 @@ class Recording:
             raise
         self._storages = self._opened.storages
         self._damage: list[str] = []  # messages that cannot be decoded
+        self.unusable: set[tuple[str, str]] = set()
         self._decoders = DecoderCache()
         self.format = self._storages[0].format
         filled = [storage for storage in self._storages if any(one.count for one in storage.connections)]
         self.start_ns = min((storage.start_ns for storage in filled), default=0)
         self.end_ns = max((storage.end_ns for storage in filled), default=0)
+        connections = [connection for storage in self._storages for connection in storage.connections]
+        readable = {connection.topic for connection in connections if is_read(connection)}
         counts: Counter[tuple[str, str]] = Counter()
-        for storage in self._storages:
-            for connection in storage.connections:
-                counts[connection.topic, connection.msgtype] += connection.count
+        for one in connections:
+            # Beside messages that are read, others on the same topic do not count.
+            if is_read(one) or one.topic not in readable:
+                counts[one.topic, _kind(one)] += one.count
         self.topics = tuple(Topic(name, msgtype, counts[name, msgtype]) for name, msgtype in sorted(counts))
 
     @property
@@ -90,12 +96,15 @@ class Recording:
             for parts in stretches_of_all(self._storages, topics, start_ns, end_ns):
                 batches = decode(parts, self._decoders)
                 for batch in batches:
-                    if isinstance(batch, BadBatch) and batch.reason == UNDECODABLE:
-                        bad[batch.topic] += batch.count
+                    if isinstance(batch, BadBatch):
+                        self.unusable.add((batch.topic, batch.reason))
+                        bad[batch.topic] += batch.count if batch.reason == UNDECODABLE else 0
                 yield batches
         if start_ns is None and end_ns is None:
             self._damage += [
-                f"{count} messages of {topic} are damaged and left out" for topic, count in bad.items()
+                f"{count} messages of {topic} are damaged and left out"
+                for topic, count in bad.items()
+                if count
             ]
 
     def close(self) -> None:
@@ -109,6 +118,13 @@ class Recording:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _kind(connection: Connection) -> str:
+    """The type of the messages, and their encoding where it is none that is read."""
+    if connection.msgtype in MESSAGE_TYPES and not is_read(connection):
+        return f"{connection.msgtype} in {connection.encoding or 'no encoding'}"
+    return connection.msgtype
 
 
 def open_recordings(paths: Sequence[Path]) -> list[Recording]:

@@ -11,6 +11,7 @@ from timemap_cli.logs.batches import BadBatch, Batch, BeamLayout, PoseBatch, Sca
 from timemap_cli.logs.block_decoding import (
     MALFORMED,
     MISMATCHED,
+    NO_STAMP_NS,
     SECOND_NS,
     UNDECODABLE,
     fits_angles,
@@ -97,7 +98,10 @@ _READERS: dict[Kind, Callable[[Any, str, int], Iterator[Batch]]] = {
 
 
 def _stamp(header: Any) -> np.ndarray[Any, np.dtype[np.int64]]:
-    return np.array([header.stamp.sec * SECOND_NS + header.stamp.nanosec], np.int64)
+    is_stamp = header.stamp.nanosec < SECOND_NS
+    return np.array(
+        [header.stamp.sec * SECOND_NS + header.stamp.nanosec if is_stamp else NO_STAMP_NS], np.int64
+    )
 
 
 def _row(vector: Any, names: str) -> np.ndarray[Any, np.dtype[np.float64]]:

@@ -79,6 +79,8 @@ class SqliteFile:
         # The one number comes from the table, the other from its index.
         if metadata.message_count != sum(one.count for one in self.connections):
             raise ValueError("the table and its index differ")
+        if metadata.message_count and not 0 <= metadata.start_time < metadata.end_time <= LAST_NS:
+            raise ValueError("a time is none")
         self.start_ns = metadata.start_time if metadata.message_count else 0
         self.end_ns = metadata.end_time - 1 if metadata.message_count else 0
 

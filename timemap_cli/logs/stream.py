@@ -51,7 +51,8 @@ class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
     Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
-    10 s behind the newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
+    10 s behind the newest), ``ahead`` (of all others of its recording), ``duplicate`` (topic and stamp of another scan),
+    ``no_pose``.
     """
 
     read: int = 0
@@ -73,12 +74,13 @@ def sweeps(
     start_ns: int | None = None,
     end_ns: int | None = None,
     drives: Sequence[Sequence[int]] | None = None,
+    latest_ns: Mapping[int, int] | None = None,
 ) -> Iterator[Sweeps | EndOfRecording]:
     """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
 
     ``recordings`` are in the order of their starts; ``beams`` is by (index, topic).
     Recordings of one of the ``drives`` are merged, with common transforms: where not given, those that
-    overlap or follow within 10 s. Within a
+    overlap or follow within 10 s. Scans stamped later than ``latest_ns`` of their recording are dropped. Within a
     drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
     (open) cut by the scans' stamps; static transforms count wherever they stand. Which scans share a block
     has no bearing on any value.
@@ -92,7 +94,8 @@ def sweeps(
         for batch in _by_nearness(static, group):
             poses.add(batch)
         rejected = poses.rejected if number else 0
-        yield from _Drive(recordings, selection, beams, counts, span_ns, poses).blocks(group)
+        drive = _Drive(recordings, selection, beams, counts, span_ns, poses, latest_ns or {})
+        yield from drive.blocks(group)
         counts.transforms_dropped += poses.rejected - rejected
 
 
@@ -107,6 +110,7 @@ class _Drive:
         counts: ScanCounts,
         span_ns: tuple[int, int],
         poses: PoseSource,
+        latest_ns: Mapping[int, int],
     ) -> None:
         self._recordings = recordings
         self._rank = {topic: rank for rank, topic in enumerate(selection.scan_topics)}
@@ -114,6 +118,7 @@ class _Drive:
         self._beams = dict(beams)
         self._counts = counts
         self._end_ns = span_ns[1]
+        self._latest_ns = latest_ns
         self._poses = poses
         self._window = ScanWindow(span_ns)
         self._frame_codes: dict[str, int] = {}
@@ -157,6 +162,11 @@ class _Drive:
                 self._counts.transforms_dropped += batch.count
 
     def _take_scans(self, index: int, batch: ScanBatch) -> None:
+        ahead = batch.stamps_ns > self._latest_ns.get(index, NEVER_NS)
+        if ahead.any():
+            self._counts.read += int(np.count_nonzero(ahead))
+            self._counts.drop("ahead", int(np.count_nonzero(ahead)))
+            batch = batch.chosen(~ahead)
         if not len(batch.stamps_ns):
             return
         if not _has_bearings(batch.layout):

@@ -29,6 +29,8 @@ from timemap_cli.logs.selection import (
 )
 from timemap_cli.model.sweeps import Sweeps
 
+DAY_NS = 86_400_000_000_000
+
 
 @dataclass(frozen=True, slots=True)
 class Survey:
@@ -42,6 +44,7 @@ class Survey:
         tuple[int, int], ...
     ]  # begin and end of each recording that has scans, in time of their stamps
     drives: tuple[Drive, ...]  # recordings that are merged and share their transforms
+    latest_ns: Mapping[int, int]  # index of the recording -> stamp beyond which no scan of it can be
 
     @property
     def span_ns(self) -> tuple[int, int]:
@@ -68,9 +71,18 @@ def survey(recordings: Sequence[Recording], settings: Settings) -> Survey:
     topics = topics_of(recordings)
     try:
         candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+        sample = take_sample(recordings, candidates)
+        if not sample.scans:
+            raise _no_scans(recordings, candidates)
+        return survey_sample(recordings, sample, candidates, settings)
     except UsageError as error:
         raise _with_damage(error, recordings) from error
-    return survey_sample(recordings, take_sample(recordings, candidates), candidates, settings)
+
+
+def _no_scans(recordings: Sequence[Recording], candidates: Sequence[str]) -> UsageError:
+    reasons = sorted({why for one in recordings for topic, why in one.unusable if topic in candidates})
+    are = f": they are {' or '.join(reasons)}" if reasons else ""
+    return UsageError(f"no scan of {', '.join(candidates)} could be read{are}")
 
 
 def survey_sample(
@@ -94,7 +106,8 @@ def survey_sample(
         *_short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
-    return Survey(selection, beams, missing, problems, spans_ns, sample.drives)
+    latest_ns = _latest_ns(len(recordings), sample, selection)
+    return Survey(selection, beams, missing, problems, spans_ns, sample.drives, latest_ns)
 
 
 def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:
@@ -174,6 +187,21 @@ def _spans_ns(
             end_ns = recording.end_ns + int(stamps_ns[last] - log_ns[last])
             found.append((begin_ns, max(begin_ns, end_ns)))
     return tuple(found)
+
+
+def _latest_ns(count: int, sample: Sample, selection: Selection) -> dict[int, int]:
+    """Stamps that no scan of a recording can have, going by nine tenths of the sampled ones.
+
+    The others may go half as far again, and a day farther: a single stamp years ahead would make all that follow late.
+    """
+    found = {}
+    for index in range(count):
+        batches = [b for topic in selection.scan_topics for b in sample.scans.get((index, topic), ())]
+        if batches:
+            stamps_ns = np.sort(np.concatenate([batch.stamps_ns for batch in batches]))
+            low, high = (int(stamps_ns[(len(stamps_ns) - 1) * tenths // 10]) for tenths in (1, 9))
+            found[index] = high + (high - low) // 2 + DAY_NS
+    return found
 
 
 def _pose_topics(
