@@ -31,6 +31,7 @@ def main(cases: int, seed: int, names: tuple[str, ...], first: int, workers: int
     found: dict[str, list[Trial]] = {}
     for name in chosen:
         found[name] = run(name, range(first, first + each), seed, workers)
+        click.echo(f"{name}: {each} cases done", err=True)
         for trial in found[name]:
             if trial.verdict in BAD:
                 click.echo(f"{name}, case {trial.number}: {trial.damage}: {trial.verdict}\n{trial.words}")

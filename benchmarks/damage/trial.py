@@ -1,7 +1,5 @@
 """One damaged recording: made, replayed, judged."""
 
-import io
-import json
 import re
 import resource
 import shutil
@@ -15,13 +13,18 @@ import numpy as np
 
 from benchmarks.damage.damages import damage_path
 from benchmarks.damage.recordings import FORMATS
-from timemap_cli.cli.main import main
-from timemap_cli.cli.terminal import Terminal
+from timemap_cli.config import load
+from timemap_cli.errors import TimemapError
+from timemap_cli.replay import replay
 from timemap_cli.results.reader import ResultReader
 
 MOST_MB = 1024  # resident, of the whole process
-# Every dropped scan counts as loss here: six seconds are too short for a share.
-OPTIONS = ("--max-dropped", "0", "--json")
+# Every dropped scan counts as loss here: six seconds are too short for a share. The map is a coarse one, to be quick.
+SETTINGS = {
+    "input": {"max_dropped": 0.0},
+    "map": {"angle_bins": 60, "radius": 5.0, "node_spacing": 2.0},
+    "levels": [{"name": "short", "window": 5, "half_life": "5obs"}],
+}
 
 
 class Verdict(StrEnum):
@@ -42,17 +45,12 @@ BAD = (Verdict.SILENT, Verdict.CRASH, Verdict.MEMORY, Verdict.HANG)
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What the program said about one recording."""
+    """What a replay of one recording says: its exit code, one error or the warnings, and what it made."""
 
     code: int
-    out: str
-    err: str
-    digest: int | None  # of the result's estimates
-
-    @property
-    def used(self) -> int:
-        """Scans that went into the result."""
-        return int(json.loads(self.out)["scans"]["used"])
+    words: str
+    used: int = 0  # scans that went into the result
+    digest: int = 0  # of the result's estimates
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +69,12 @@ class Bench:
     def __init__(self, name: str, folder: Path) -> None:
         self.name = name
         self._folder = folder
+        self._settings = load(None, SETTINGS)
         (folder / "good").mkdir()
         self._good = FORMATS[name](folder / "good" / "run")
         self.expected = self._replay(self._good)
         if self.expected.code:
-            raise RuntimeError(f"the undamaged {name} is not read: {self.expected.err}")
+            raise RuntimeError(f"the undamaged {name} is not read: {self.expected.words}")
 
     def trial(self, number: int, seed: int) -> Trial:
         """Damage a copy by the case's own random numbers, replay it and judge."""
@@ -102,23 +101,21 @@ class Bench:
     def _replay(self, recording: Path) -> Outcome:
         result = self._folder / "result.mcap"
         result.unlink(missing_ok=True)
-        out, err = io.StringIO(), io.StringIO()
-        code = main(["replay", str(recording), "-o", str(result), *OPTIONS], Terminal(out, err, {}))
-        return Outcome(code, out.getvalue(), err.getvalue(), _digest(result) if code in (0, 3) else None)
+        try:
+            summary = replay([recording], result, self._settings)
+        except TimemapError as error:
+            return Outcome(error.exit_code, f"error: {error.message}")
+        words = "\n".join(f"warning: {one}" for one in summary.warnings)
+        return Outcome(3 if summary.data_lost else 0, words, summary.scans_used, _digest(result))
 
     def _judge(self, found: Outcome) -> tuple[Verdict, str]:
         if found.code in (1, 2):
-            lines = [line for line in found.err.splitlines() if line.startswith("error: ")]
-            return (Verdict.REFUSED if len(lines) == 1 else Verdict.CRASH), found.err
+            return Verdict.REFUSED, found.words
         if found.code == 3:
-            return (Verdict.TOLD if "warning: " in found.err else Verdict.SILENT), found.err
-        if found.code != 0:
-            return Verdict.CRASH, f"exit code {found.code}: {found.err}"
+            return (Verdict.TOLD if found.words else Verdict.SILENT), found.words
         if found.used < self.expected.used:
-            return Verdict.SILENT, f"{found.out}{found.err}"
-        if found.digest == self.expected.digest:
-            return Verdict.WHOLE, found.err
-        return Verdict.VALUES, found.err
+            return Verdict.SILENT, f"{found.used} scans of {self.expected.used}\n{found.words}"
+        return (Verdict.WHOLE if found.digest == self.expected.digest else Verdict.VALUES), found.words
 
 
 def peak_mb() -> float:

@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import resource
 import tempfile
+import warnings
 from collections.abc import Sequence
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -55,6 +56,7 @@ def _work(name: str, numbers: Sequence[int], seed: int, sender: Connection) -> N
     os.sched_setaffinity(
         0, {min(os.sched_getaffinity(0))} if os.getpid() % 2 else {max(os.sched_getaffinity(0))}
     )
+    warnings.simplefilter("error")
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE))
     memory = Path("/dev/shm")  # a result is written through to the disk, which takes longer than all else
     with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder:

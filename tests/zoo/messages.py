@@ -121,6 +121,7 @@ MESSAGES = (
     Animal("transforms_with_nan", _three_poses(NAN, 0, 0, *STILL), "leaves those out and says so", 0, "3 transforms or poses could not be used", WHOLE),
     Animal("transforms_with_infinity", _three_poses(0, INF, 0, *STILL), "leaves those out and says so", 0, "3 transforms or poses could not be used", WHOLE),
     Animal("transforms_off_the_earth", _three_poses(1e300, 0, 0, *STILL), "leaves those out and says so", 0, "3 transforms or poses could not be used", WHOLE),
+    Animal("transforms_with_a_rotation_beyond_all_numbers", _three_poses(0, 0, 0, 0, 0, 1e200, 1), "leaves those out and says so", 0, "3 transforms or poses could not be used", WHOLE),
     Animal("transforms_stamped_years_ahead", _poses(lambda i: {"stamp_ns": _stamp(i) + YEAR_NS} if i in THREE else {}), "goes by the others", 0, "", WHOLE),
     Animal("transforms_without_a_stamp", _poses(lambda i: {"stamp_ns": 0} if i in THREE else {}), "goes by the others", 0, "", WHOLE),
 )  # fmt: skip
