@@ -9,7 +9,7 @@ from pathlib import Path
 import zstandard
 
 from tests.logs.recorded import ROS2, StoragePlugin, write_mcap, write_rosbag2
-from tests.zoo.making import Animal, changed, cut, drive, mcap, overwritten
+from tests.zoo.making import Animal, cut, drive, mcap, overwritten
 
 PAGE = 4096
 
@@ -94,6 +94,16 @@ def _two_recordings(folder: Path) -> Path:
     return path
 
 
+def _folder_of_damaged_messages(folder: Path) -> Path:
+    """Three of the messages, each packed by itself, are cut short."""
+    path = _folder(folder, StoragePlugin.SQLITE3, "message")
+    connection = sqlite3.connect(path / "run.db3")
+    connection.execute("UPDATE messages SET data = substr(data, 1, 30) WHERE id IN (62, 64, 66)")
+    connection.commit()
+    connection.close()
+    return path
+
+
 def _written(folder: Path, name: str, content: bytes) -> Path:
     path = folder / name
     path.write_bytes(content)
@@ -153,7 +163,7 @@ FOLDERS = (
     Animal("folder_whose_second_part_is_no_recording", lambda f: _parts(f, damaged=True), "reads the first and says what is wrong with the other", 3, "run_1.mcap cannot be read and is left out", SOME),
     Animal("folder_that_is_empty", _made, "says that it holds no recording", 2, "holds no recording"),
     Animal("folder_of_two_recordings", _two_recordings, "names both", 2, "holds several recordings"),
-    Animal("folder_with_messages_that_are_packed_and_damaged", lambda f: _folder_of_damaged_messages(f), "counts those it cannot unpack", 3, "3 messages of /scan are damaged", 57, {"undecodable": 3}),
+    Animal("folder_with_messages_that_are_packed_and_damaged", _folder_of_damaged_messages, "counts those it cannot unpack", 3, "3 messages of /scan are damaged", 57, {"undecodable": 3}),
     Animal("zstd_file", _packed, "unpacks and reads it", 0, "", WHOLE),
     Animal("zstd_file_cut_off", lambda f: _packed(f, 0.5), "reads what could be unpacked", 3, "cut off", SOME),
     Animal("zstd_file_of_a_text", lambda f: _packed(f, content=b"some text"), "says that it is no recording", 2, "is not a recording"),
@@ -164,13 +174,3 @@ FOLDERS = (
     Animal("zeros", lambda f: _written(f, "run.bag", bytes(10_000)), "says what is read", 2, "is not a recording"),
     Animal("result_of_ours", _result, "says that it is a result", 2, "is a result of timemap"),
 )  # fmt: skip
-
-
-def _folder_of_damaged_messages(folder: Path) -> Path:
-    """Three of the messages, each packed by itself, are cut short."""
-    path = _folder(folder, StoragePlugin.SQLITE3, "message")
-    connection = sqlite3.connect(path / "run.db3")
-    connection.execute("UPDATE messages SET data = substr(data, 1, 30) WHERE id IN (62, 64, 66)")
-    connection.commit()
-    connection.close()
-    return path

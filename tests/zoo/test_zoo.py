@@ -90,3 +90,8 @@ def test_what_is_unusual_and_legal_gives_the_same_map(animal: Animal, tmp_path):
 def test_the_zoo_is_large_and_every_animal_has_its_own_name():
     assert len(ZOO) >= 60
     assert len({one.name for one in ZOO}) == len(ZOO)
+
+
+@pytest.fixture(autouse=True)
+def one_process(monkeypatch):
+    monkeypatch.setattr("timemap_cli.second_process._usable_processors", lambda: {0})

@@ -51,8 +51,8 @@ class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
     Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
-    10 s behind the newest), ``ahead`` (of all others of its recording), ``duplicate`` (topic and stamp of another scan),
-    ``no_pose``.
+    10 s behind the newest), ``ahead`` (of all others of its recording), ``duplicate`` (topic and stamp of
+    another scan), ``no_pose``.
     """
 
     read: int = 0
