@@ -10,7 +10,7 @@ from collections import Counter
 import click
 
 from benchmarks.damage.recordings import FORMATS
-from benchmarks.damage.table import table
+from benchmarks.damage.table import row, table
 from benchmarks.damage.trial import BAD, Trial, sentence
 from benchmarks.damage.workers import run
 
@@ -31,7 +31,7 @@ def main(cases: int, seed: int, names: tuple[str, ...], first: int, workers: int
     found: dict[str, list[Trial]] = {}
     for name in chosen:
         found[name] = run(name, range(first, first + each), seed, workers)
-        click.echo(f"{name}: {each} cases done", err=True)
+        click.echo(row(name, found[name]), err=True)
         for trial in found[name]:
             if trial.verdict in BAD:
                 click.echo(f"{name}, case {trial.number}: {trial.damage}: {trial.verdict}\n{trial.words}")

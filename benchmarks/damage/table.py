@@ -8,11 +8,12 @@ from benchmarks.damage.trial import Trial, Verdict
 
 def table(found: Mapping[str, Sequence[Trial]]) -> str:
     """A line for each format, and one for all."""
-    verdicts = tuple(Verdict)
-    lines = ["| format | cases | " + " | ".join(verdicts) + " |", "|---" * (len(verdicts) + 2) + "|"]
-    rows = {**found, "all": [trial for trials in found.values() for trial in trials]}
-    for name, trials in rows.items():
-        counts = Counter(trial.verdict for trial in trials)
-        cells = " | ".join(str(counts[verdict]) for verdict in verdicts)
-        lines.append(f"| {name} | {len(trials)} | {cells} |")
-    return "\n".join(lines)
+    head = ["| format | cases | " + " | ".join(Verdict) + " |", "|---" * (len(Verdict) + 2) + "|"]
+    everything = [trial for trials in found.values() for trial in trials]
+    return "\n".join([*head, *(row(name, trials) for name, trials in found.items()), row("all", everything)])
+
+
+def row(name: str, trials: Sequence[Trial]) -> str:
+    """How many trials came to which verdict."""
+    counts = Counter(trial.verdict for trial in trials)
+    return f"| {name} | {len(trials)} | " + " | ".join(str(counts[verdict]) for verdict in Verdict) + " |"
