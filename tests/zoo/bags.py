@@ -44,12 +44,12 @@ def _second_chunk_twice(path: Path) -> Path:
 
 
 def _bomb(folder: Path) -> Path:
-    """The second of the chunks unpacks to 300 MB, and says it holds as much as before."""
+    """The second of the chunks unpacks to 100 MB, and says it holds as much as before."""
     path = bag(folder, "bz2")
     content = path.read_bytes()
     at = content.index(b"BZh", content.index(b"BZh") + 1)
     old = int.from_bytes(content[at - 4 : at], "little")
-    new = bz2.compress(bytes(300_000_000))
+    new = bz2.compress(bytes(100_000_000))
     return changed(path, lambda _: content[: at - 4] + uint32(len(new)) + new + content[at + old :])
 
 

@@ -71,12 +71,30 @@ def drive(
 
 def mcap(folder: Path, messages: list[Message] | None = None, **options: Any) -> Path:
     """The drive as an MCAP of a dozen chunks."""
-    return write_mcap(folder / "run.mcap", messages or drive(ROS2), **options)
+    path = folder / "run.mcap"
+    if messages is not None:
+        return write_mcap(path, messages, **options)
+    return _once(path, repr(options), lambda: write_mcap(path, drive(ROS2), **options))
 
 
 def bag(folder: Path, compression: str = "none", messages: list[Message] | None = None) -> Path:
     """The drive as a ROS 1 bag of a few chunks."""
-    return write_bag(folder / "run.bag", messages or drive(ROS1), compression, chunk_bytes=4000)
+    path = folder / "run.bag"
+    if messages is not None:
+        return write_bag(path, messages, compression, chunk_bytes=4000)
+    return _once(path, compression, lambda: write_bag(path, drive(ROS1), compression, chunk_bytes=4000))
+
+
+_written: dict[str, bytes] = {}
+
+
+def _once(path: Path, key: str, write: Callable[[], Path]) -> Path:
+    """Write the undamaged recording; most animals begin with it, and its bytes are made only once."""
+    if key not in _written:
+        _written[key] = write().read_bytes()
+    else:
+        path.write_bytes(_written[key])
+    return path
 
 
 def changed(path: Path, change: Callable[[bytearray], bytes | bytearray | None]) -> Path:

@@ -58,9 +58,9 @@ def _first_range(path: Path) -> int:
 
 
 def _bomb(folder: Path, name: str) -> Path:
-    """A chunk that unpacks to a gigabyte, beside the good ones, in a file without summary."""
+    """A chunk that unpacks to 200 MB, beside the good ones, in a file without summary."""
     path = mcap(folder, **NO_SUMMARY)
-    zeros = bytes(1 << 30)
+    zeros = bytes(200_000_000)
     packed = zstandard.compress(zeros) if name == "zstd" else lz4.frame.compress(zeros)
     body = struct.pack("<QQQI", START_NS, START_NS, 5000, 0)
     body += uint32(len(name)) + name.encode() + uint64(len(packed)) + packed

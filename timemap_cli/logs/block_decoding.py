@@ -24,6 +24,7 @@ from timemap_cli.logs.tracing import Element, Trace
 # Why a message gives nothing: its bytes are not what its type asks for, or what it says cannot be used.
 UNDECODABLE, MALFORMED, MISMATCHED = "undecodable", "malformed", "mismatched"
 MOST_BEAMS = 100_000  # of a scan; the finest scanners have some ten thousand
+MOST_ANGLE = 4 * np.pi  # [rad] for the first bearing, and for what a scan spans: degrees are no radians
 SPARE_BEAMS, SPARE_SHARE = 2, 0.05  # by which the beams may differ from what the angles say
 SECOND_NS = 1_000_000_000
 NO_STAMP_NS = -SECOND_NS  # stands for a stamp that is none
@@ -132,8 +133,8 @@ def _same_rows(rows: NDArray[np.uint32]) -> Iterator[tuple[NDArray[np.uint32], N
 
 def has_beams(layout: BeamLayout) -> bool:
     """Whether there are beams, not more than a scanner has, and it is known where they look."""
-    is_known = bool(np.isfinite([layout.angle_min, layout.angle_increment]).all())
-    return 0 < layout.count <= MOST_BEAMS and is_known
+    span = abs(layout.angle_increment) * (layout.count - 1)
+    return 0 < layout.count <= MOST_BEAMS and abs(layout.angle_min) <= MOST_ANGLE and span <= MOST_ANGLE
 
 
 def fits_angles(layout: BeamLayout, angle_max: Float32s) -> NDArray[np.bool_]:

@@ -14,6 +14,7 @@ from typing import Any
 import zstandard
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
+from ruamel.yaml.events import CollectionEndEvent, CollectionStartEvent
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.logs.bag_file import BagFile
@@ -32,10 +33,11 @@ READERS: dict[bytes, Callable[[Path], Storage]] = {
 }
 READABLE = "a ROS 1 bag, a ROS 2 bag (its folder or a file of it) or an MCAP file"
 METADATA = "metadata.yaml"
-MOST_METADATA_BYTES = 16 << 20
+MOST_METADATA_BYTES = 1 << 20
+MOST_DEPTH = 50  # of what is nested in it
 # A compressed file is unpacked on the disk: to so many times its size, and so many bytes at least.
 MOST_TIMES, LEAST_BYTES = 200, 64 << 20
-PACKED_BYTES = 4096
+PACKED_BYTES = 1024
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
 
@@ -142,7 +144,7 @@ def _decompressed(path: Path, stack: ExitStack) -> tuple[Path, str]:
     unpacking = zstandard.ZstdDecompressor(max_window_size=MOST_CHUNK_BYTES).decompressobj()
     with path.open("rb") as packed, target.open("wb") as unpacked:
         try:
-            # A few kilobytes hold up to a hundred megabytes.
+            # A kilobyte holds up to 32 MB.
             while not unpacking.eof and (block := packed.read(PACKED_BYTES)):
                 unpacked.write(unpacking.decompress(block))
                 if unpacked.tell() > most:
@@ -193,7 +195,13 @@ def _files_of_folder(folder: Path) -> _Listed:
 def _metadata(path: Path) -> Any:
     if path.stat().st_size > MOST_METADATA_BYTES:
         raise ValueError("it is too large")
-    return YAML(typ="safe").load(path.read_text(encoding="utf-8"))["rosbag2_bagfile_information"]
+    text = path.read_text(encoding="utf-8")
+    depth = 0
+    for event in YAML(typ="safe").parse(text):  # building what is deeply nested takes very long
+        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
+        if depth > MOST_DEPTH:
+            raise ValueError("it is nested too deeply")
+    return YAML(typ="safe").load(text)["rosbag2_bagfile_information"]
 
 
 def _listed_names(content: Any) -> list[str]:
