@@ -16,6 +16,7 @@ from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.learner import Kept
+from timemap_cli.model.placement import MOST_NODES
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
@@ -73,20 +74,22 @@ def replay(
     began = time.perf_counter()
     with ExitStack() as stack:
         earlier = _earlier(resume, settings)
+        if earlier is not None:
+            stack.enter_context(earlier.damage_told())
         recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
         plan = _surveyed(recordings, settings, earlier)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        observer, tracker = assembly.observer(settings, given), assembly.tracker(settings)
-        observing = Observing(recordings, plan, observer, earlier.reading if earlier else None)
-        writing = Writing(result, tracker)
-        learning = partial(assembly.learner, settings, given)
-        if earlier is not None:
-            writing.restore(earlier.parts(), observer.nodes)
-            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
+        observing = Observing(recordings, plan, assembly.observer(settings, given))
+        writing = Writing(result, assembly.tracker(settings))
         start_ns, end_ns = _span_ns(plan, start, end)
         if earlier is not None:
             earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+            observing.restore(earlier.reading)
+            writing.restore(earlier.parts(), observing.nodes)
+        learning = partial(assembly.learner, settings, given)
+        if earlier is not None:
+            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
         steps = observing.steps(start_ns, end_ns)
         for answer in stack.enter_context(closing(mapped(learning, steps))):
             if isinstance(answer, Kept):
@@ -116,7 +119,7 @@ def _earlier(resume: Path | None, settings: Settings) -> Earlier | None:
 def _surveyed(recordings: Sequence[Recording], settings: Settings, earlier: Earlier | None) -> Survey:
     if earlier is None:
         return survey(recordings, settings)
-    return survey(recordings, earlier.settings_to_read_by(), earlier.known)
+    return survey(recordings, earlier.to_read_by, earlier.known)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
@@ -203,7 +206,7 @@ def _require_some_use(
         frame = plan.selection.map_frame
         raise UsageError(
             f"{message} (--nodes {nodes}: none is near enough)",
-            hint=f"nodes where the robot drives, in metres of the frame '{frame}'",
+            hint=f"nodes where the robot drives, in metres of the frame {frame!r}",
         )
     raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
 
@@ -222,6 +225,8 @@ def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:
             f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
             "lost, or the place is another one now (to learn them at once: gate.max_contradiction: 1)"
         )
+    if len(observing.nodes) >= MOST_NODES and observing.counts.dropped.get("no_node"):
+        yield f"the map has {MOST_NODES} nodes, the most there may be: scans far from all were dropped (no_node)"
     if unusable := observing.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
     if writing.span_ns > VIEWERS_SPAN_NS:

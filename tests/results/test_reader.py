@@ -18,7 +18,7 @@ def room(tmp_path_factory):
 
 def same(one, other):
     assert (one.node, one.level, one.stamp_ns) == (other.node, other.level, other.stamp_ns)
-    for name in ("ranges", "support", "plausibility", "samples", "status", "last_seen_ns"):
+    for name in ("ranges", "support", "known", "samples", "status", "last_seen_ns"):
         written, read = getattr(one, name), getattr(other, name)
         assert (written.dtype, written.tobytes()) == (read.dtype, read.tobytes())
 

@@ -7,19 +7,17 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from pathlib import Path, PurePath
+from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import zstandard
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
-from ruamel.yaml.events import CollectionEndEvent, CollectionStartEvent
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.logs.announced_counts import announced_counts
 from timemap_cli.logs.bag_file import BagFile
 from timemap_cli.logs.bounds import MOST_CHUNK_BYTES
 from timemap_cli.logs.foreign_errors import FOREIGN_ERRORS, reason
+from timemap_cli.logs.listed_names import listed_names
 from timemap_cli.logs.mcap_file import McapFile
 from timemap_cli.logs.raw import Storage
 from timemap_cli.logs.sqlite_file import SqliteFile
@@ -33,8 +31,6 @@ READERS: dict[bytes, Callable[[Path], Storage]] = {
 }
 READABLE = "a ROS 1 bag, a ROS 2 bag (its folder or a file of it) or an MCAP file"
 METADATA = "metadata.yaml"
-MOST_METADATA_BYTES = 1 << 20
-MOST_DEPTH = 50  # of what is nested in it
 # A compressed file is unpacked on the disk: to so many times its size, and so many bytes at least.
 MOST_TIMES, LEAST_BYTES = 200, 64 << 20
 PACKED_BYTES = 1024
@@ -167,57 +163,28 @@ class _Listed:
 def _files_of_folder(folder: Path) -> _Listed:
     """The storage files of a bag folder, those its metadata names or all where it has none."""
     try:
-        content = _metadata(folder / METADATA)
-        names = _listed_names(content)
+        names = listed_names(folder / METADATA)
     except FileNotFoundError:
         return _Listed(_found_files(folder))
-    except (YAMLError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+    except ValueError:
         return _Listed(_found_files(folder), remarks=[f"{METADATA} cannot be read; all files beside it are"])
+    counts = announced_counts(folder / METADATA)
     paths, problems = [], []
-    for name in names:
+    for name in dict.fromkeys(name for name in names if name and "\0" not in name):
         # Older rosbag2 names a compressed file without the suffix it gave it.
-        present = [one for one in (folder / name, folder / f"{name}.zstd") if one.exists()]
+        either = (folder / name, folder / f"{name}.zstd")
+        present = [one for one in either if one.is_file() or one.is_dir()]  # opening a pipe would wait
         if present:
             paths.append(present[0])
         else:
             problems.append(f"{name} is missing, although {METADATA} names it")
     if paths:
-        return _Listed(paths, problems, counts=_counts(content))
+        return _Listed(paths, problems, counts=counts)
     try:
         found = _found_files(folder)
     except UsageError as error:
         raise UsageError(f"{folder} holds none of the files that its {METADATA} names") from error
-    return _Listed(
-        found, remarks=[f"{METADATA} names other files; those beside it are read"], counts=_counts(content)
-    )
-
-
-def _metadata(path: Path) -> Any:
-    if path.stat().st_size > MOST_METADATA_BYTES:
-        raise ValueError("it is too large")
-    text = path.read_text(encoding="utf-8")
-    depth = 0
-    for event in YAML(typ="safe").parse(text):  # building what is deeply nested takes very long
-        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
-        if depth > MOST_DEPTH:
-            raise ValueError("it is nested too deeply")
-    return YAML(typ="safe").load(text)["rosbag2_bagfile_information"]
-
-
-def _listed_names(content: Any) -> list[str]:
-    """Names of the files, without the folders in front of them: they lead out of no recording."""
-    names = content["relative_file_paths"]
-    found = [PurePath(name).name for name in names] if isinstance(names, list) else []
-    return list(dict.fromkeys(name for name in found if name and "\0" not in name))
-
-
-def _counts(content: Any) -> dict[str, int]:
-    """How many messages of each topic the metadata announces; empty where it cannot be understood."""
-    try:
-        topics = content["topics_with_message_count"]
-        return {one["topic_metadata"]["name"]: int(one["message_count"]) for one in topics}
-    except (KeyError, TypeError, ValueError, OverflowError):
-        return {}
+    return _Listed(found, remarks=[f"{METADATA} names other files; those beside it are read"], counts=counts)
 
 
 def _found_files(folder: Path) -> list[Path]:

@@ -2,7 +2,6 @@
 
 import base64
 import gzip
-import json
 from typing import Any
 
 import numpy as np
@@ -36,7 +35,7 @@ def page_data(reader: ResultReader) -> dict[str, Any]:
         "coverage": _coverage(reader),
         "changes": reader.changes,
         "report": report,
-        "inputs": json.loads(reader.metadata.get("inputs", "[]")),
+        "inputs": reader.inputs,
         "settings": reader.config,
         "made": [
             [name, reader.metadata[name]]
