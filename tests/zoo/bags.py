@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bz2
+import struct
 from pathlib import Path
 
 from tests.logs.recorded import ROS1, START_NS, Message, make
@@ -18,6 +19,19 @@ def _index_at(content: bytes | bytearray) -> int:
 
 def _without_index(path: Path) -> Path:
     return changed(path, lambda content: content[: _index_at(content)])
+
+
+def _before_chunk(path: Path, number: int) -> Path:
+    """The bag up to where one of its chunks begins."""
+    content = path.read_bytes()
+    begins, at = [], 13
+    while at < _index_at(content):
+        (header,) = struct.unpack_from("<I", content, at)
+        (data,) = struct.unpack_from("<I", content, at + 4 + header)
+        if b"compression=" in content[at : at + 4 + header]:
+            begins.append(at)
+        at += 8 + header + data
+    return changed(path, lambda _: content[: begins[number]])
 
 
 def _never_closed(path: Path) -> Path:
@@ -105,6 +119,7 @@ BAGS = (
     Animal("bag_cut_in_a_chunk", lambda f: cut(bag(f), 0.6), "reads what comes before the cut and says where it is", 3, "cut off at byte", SOME),
     Animal("bag_cut_in_a_bz2_chunk", lambda f: cut(bag(f, "bz2"), 0.6), "reads the chunks before the cut", 3, "cut off at byte", SOME),
     Animal("bag_cut_in_an_lz4_chunk", lambda f: cut(bag(f, "lz4"), 0.6), "reads the chunks before the cut", 3, "cut off at byte", SOME),
+    Animal("bag_cut_between_two_chunks", lambda f: _before_chunk(bag(f, "lz4"), -2), "says that the last chunks are missing", 3, "cut off at byte", SOME),
     Animal("bag_cut_before_its_index", lambda f: _without_index(bag(f)), "reads all of it and says that the index is missing", 0, "index is missing", WHOLE),
     Animal("bag_cut_in_its_index", lambda f: changed(bag(f), lambda c: c[:-40]), "reads all of it and says that the index is damaged", 0, "index is missing or damaged", WHOLE),
     Animal("bag_that_was_never_closed", lambda f: _never_closed(bag(f)), "reads all of it and says that the index is missing", 0, "index is missing", WHOLE),

@@ -144,11 +144,12 @@ class BagFile:
         size = self._size
         found: dict[int, Connection] = {}
         spans: list[BagSpan] = []
-        position = header.stop
+        position, chunks = header.stop, 0
         try:
             while position < size:
                 record = records.file_record(self._file, position)
                 if record.op == records.CHUNK:
+                    chunks += 1
                     content = self._scanned(record, position)
                     found |= _connections(content)
                     spans += _walked_span(position, content)
@@ -170,7 +171,9 @@ class BagFile:
         except (DamagedBagError, struct.error):
             self.problems.append(_cut_off(position, size, spans))
         else:
-            if not spans:
+            if _lacks_chunks(header, size, chunks):
+                self.problems.append(_cut_off(position, size, spans))
+            elif not spans:
                 self.problems.append("it is damaged, and no message is left in it")
             self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
         return found, spans
@@ -200,6 +203,14 @@ class BagFile:
         except DamagedBagError:
             pass
         return content[:stop] if records.MESSAGE in ops else b""
+
+
+def _lacks_chunks(header: records.Record, size: int, chunks: int) -> bool:
+    """Whether a bag ends between two records, in front of where its head says that the index is, and lacks chunks."""
+    try:
+        return header.number("index_pos") > size and chunks < header.number("chunk_count")
+    except DamagedBagError:
+        return False
 
 
 def _cut_off(position: int, size: int, spans: list[BagSpan]) -> str:
