@@ -171,12 +171,18 @@ class BagFile:
         except (DamagedBagError, struct.error):
             self.problems.append(_cut_off(position, size, spans))
         else:
-            if _lacks_chunks(header, size, chunks):
-                self.problems.append(_cut_off(position, size, spans))
-            elif not spans:
-                self.problems.append("it is damaged, and no message is left in it")
-            self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
+            self._tell_of_index(header, position, spans, chunks)
         return found, spans
+
+    def _tell_of_index(
+        self, header: records.Record, position: int, spans: list[BagSpan], chunks: int
+    ) -> None:
+        """Say that there is no index, and what is missing with it."""
+        if _lacks_chunks(header, self._size, chunks):
+            self.problems.append(_cut_off(position, self._size, spans))
+        elif not spans:
+            self.problems.append("it is damaged, and no message is left in it")
+        self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
 
     def _scanned(self, chunk: records.Record, position: int) -> bytes:
         """The whole records of a chunk; none, and an entry in ``problems``, where it is damaged."""
