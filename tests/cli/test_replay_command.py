@@ -21,7 +21,7 @@ class Replays:
     summary: dict[str, object] = field(default_factory=dict)
     failure: BaseException | None = None
 
-    def replay(self, logs, output, settings, *, force, nodes, start, end, progress):
+    def replay(self, logs, output, settings, *, force, nodes, start, end, resume, progress):
         self.calls.append(SimpleNamespace(**{k: v for k, v in locals().items() if k != "self"}))
         progress(0.5, 100)
         if self.failure:
