@@ -13,6 +13,7 @@ from timemap_cli import assembly
 from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.fingerprint import sha256
+from timemap_cli.logs.pose_quality import JUMP, UNCERTAIN
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.learner import Kept
@@ -224,6 +225,14 @@ def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:
         yield (
             f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
             "lost, or the place is another one now (to learn them at once: gate.max_contradiction: 1)"
+        )
+    dropped = observing.counts.dropped
+    if doubtful := {reason: dropped[reason] for reason in (UNCERTAIN, JUMP) if dropped.get(reason)}:
+        reasons = ", ".join(f"{reason} {count}" for reason, count in doubtful.items())
+        yield (
+            f"{sum(doubtful.values())} scans were set aside because their pose cannot be trusted ({reasons}); "
+            "timemap info tells how uncertain the poses are, gate.max_position_std, max_yaw_std_deg and max_jump "
+            "are the limits"
         )
     if len(observing.nodes) >= MOST_NODES and observing.counts.dropped.get("no_node"):
         yield f"the map has {MOST_NODES} nodes, the most there may be: scans far from all were dropped (no_node)"

@@ -85,6 +85,7 @@ class Observing:
             end_ns=end_ns,
             drives=plan.drives,
             latest_ns=plan.latest_ns,
+            limits=plan.pose_limits,
             earlier=None if self._earlier is None else without_prefix("stream", self._earlier),
         )
         # Two scanners in turn, or bearings that differ from scan to scan, make blocks of one scan.
