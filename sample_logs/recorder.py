@@ -72,11 +72,15 @@ def in_log_order(*streams: Iterable[Event]) -> Iterator[Event]:
     return heapq.merge(*streams, key=attrgetter("log_ns"))
 
 
-def write_ros1_bag(path: Path, events: Iterable[Event]) -> None:
-    """Write a ROS 1 bag with bz2 chunks."""
+def write_ros1_bag(
+    path: Path, events: Iterable[Event], compression: str = "bz2", chunk_bytes: int = 1 << 20
+) -> None:
+    """Write a ROS 1 bag whose chunks are compressed by "bz2", "lz4" or not at all ("none")."""
     messages = _Messages(Stores.ROS1_NOETIC)
     writer = Ros1Writer(path)
-    writer.set_compression(Ros1Writer.CompressionFormat.BZ2)
+    writer.chunk_threshold = chunk_bytes
+    if compression != "none":
+        writer.set_compression(Ros1Writer.CompressionFormat[compression.upper()])
     with writer:
         latched = {TF_STATIC: 1}
         connections = {

@@ -101,8 +101,8 @@ def test_too_many_dropped_scans_are_told_with_their_reasons(tmp_path):
 
 
 def test_a_recording_of_which_the_cut_left_nothing_is_said_to_be_cut_off(tmp_path):
-    log = write_bag(tmp_path / "a.bag", drive(ROS1, 200), "lz4", chunk_bytes=10**9)
-    log.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    log = write_bag(tmp_path / "a.bag", drive(ROS1, 200), "bz2", chunk_bytes=10**9)
+    log.write_bytes(log.read_bytes()[: log.read_bytes().index(b"BZh") + 100])
     with pytest.raises(UsageError, match=r"no laser scans in .*a\.bag: it is cut off at byte \d+ of \d+"):
         replayed(tmp_path, log)
 

@@ -84,6 +84,7 @@ class Observing:
             start_ns=start_ns,
             end_ns=end_ns,
             drives=plan.drives,
+            latest_ns=plan.latest_ns,
             limits=plan.pose_limits,
             earlier=None if self._earlier is None else without_prefix("stream", self._earlier),
         )

@@ -21,7 +21,7 @@ class Replays:
     summary: dict[str, object] = field(default_factory=dict)
     failure: BaseException | None = None
 
-    def replay(self, logs, output, settings, *, force, nodes, start, end, progress):
+    def replay(self, logs, output, settings, *, force, nodes, start, end, resume, progress):
         self.calls.append(SimpleNamespace(**{k: v for k, v in locals().items() if k != "self"}))
         progress(0.5, 100)
         if self.failure:
@@ -71,6 +71,7 @@ def test_every_option_reaches_its_place(replays, tmp_path):
     ran = timemap(
         *("replay", "a.mcap", "-o", "out.mcap", "--force", "--config", config),
         *("--scan-topic", "/front", "--scan-topic", "/rear", "--map-frame", "world", "--poses", "/amcl_pose"),
+        *("--max-dropped", "0.25"),
         *("--no-return", "ignore", "--start", "+10s", "--end", "end-5s", "--nodes", "n.mcap", "--seed", "5"),
     )
     assert ran.code == 0, ran.err
@@ -81,6 +82,7 @@ def test_every_option_reaches_its_place(replays, tmp_path):
     assert call.settings.seed == 5
     assert call.settings.input.scan_topics == ("/front", "/rear")
     assert call.settings.input.map_frame == "world"
+    assert call.settings.input.max_dropped == 0.25
     assert (call.settings.input.poses, call.settings.input.no_return) == ("/amcl_pose", "ignore")
 
 

@@ -172,7 +172,7 @@ def test_messages_cut_short_are_counted_and_the_others_read(encoding, cut):
     raws = [serialised(store, content) for content in contents]
     raws[1] = raws[1][:cut]
     found = decode_raws(connection(store, "sensor_msgs/msg/LaserScan"), raws)
-    assert BadBatch("/topic", "malformed", 1) in found
+    assert BadBatch("/topic", "undecodable", 1) in found
     messages = [("/topic", index, contents[index]) for index in (0, 2, 3)]
     assert rows([one for one in found if not isinstance(one, BadBatch)]) == expected_rows(messages)
 
@@ -220,6 +220,42 @@ def test_scans_without_usable_beams_are_malformed(ranges, values, little_endian)
     content = recorded.scan(ROS2, 1, ranges, **values)
     found = decode_contents(ROS2, [content, content], little_endian=little_endian)
     assert found == [BadBatch("/topic", "malformed", 2)]
+
+
+@pytest.mark.parametrize("little_endian", [True, False])
+@pytest.mark.parametrize(
+    ("beams", "angle_max", "fits"),
+    [
+        (5, 1.0, True),  # -1 to 1 by steps of 0.5
+        (4, 1.0, True),  # a driver that leaves out the beam at the end
+        (7, 1.0, True),
+        (8, 1.0, False),
+        (2, 1.0, False),
+        (100, 1.0, False),
+        (100, 0.0, False),
+        (100, -1.0, True),  # never set
+        (100, -2.0, True),  # on the other side
+        (100, np.nan, True),
+        (100, np.inf, True),
+    ],
+)
+def test_as_many_beams_as_the_angles_ask_for(beams, angle_max, fits, little_endian):
+    content = recorded.scan(
+        ROS2, 1, [1.0] * beams, angle_increment=0.1 if beams == 100 else 0.5, angle_max=angle_max
+    )
+    found = decode_contents(ROS2, [content, content], little_endian=little_endian)
+    assert (found == [BadBatch("/topic", "mismatched", 2)]) != fits
+    assert sum(len(one.log_ns) for one in found if not isinstance(one, BadBatch)) == 2 * fits
+
+
+@pytest.mark.parametrize("little_endian", [True, False])
+def test_a_second_of_nanoseconds_is_no_stamp(little_endian):
+    contents = [recorded.scan(ROS2, 5, [1, 2]) for _ in range(2)]
+    contents[1].header.stamp.nanosec = 1_000_000_000
+    found = decode_contents(ROS2, contents, little_endian=little_endian)
+    stamps = sorted(int(stamp) for batch in found for stamp in batch.stamps_ns)
+    assert stamps[1] == 5
+    assert stamps[0] < 0
 
 
 def test_definition_of_the_recording_is_followed():

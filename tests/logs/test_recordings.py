@@ -336,10 +336,26 @@ def test_a_bag_cut_off_in_its_only_chunk_gives_the_whole_messages_before(tmp_pat
     assert remarks(path) == ""
 
 
-def test_a_bag_cut_off_in_its_only_compressed_chunk_says_that_nothing_is_left(tmp_path):
-    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "lz4", chunk_bytes=10**9)
-    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    assert "no message comes whole before that" in problems_after_reading(path)
+def cut_in_its_chunk(path: Path) -> Path:
+    """The bag of one chunk without the last third of that, and what stands behind it."""
+    content = path.read_bytes()
+    begin, end = content.index(b"compression="), content.index(b"ver=\1\0\0\0")
+    path.write_bytes(content[: begin + (end - begin) * 2 // 3])
+    return path
+
+
+def test_a_bag_cut_off_in_its_only_compressed_chunk_gives_the_blocks_before(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 500), "lz4", chunk_bytes=10**9)
+    found, whole = read(cut_in_its_chunk(path)), recorded.drive_rows(ROS2, 500)
+    scans = ("scan", "/scan", "laser")
+    assert 100 < len(found[scans]) < 450
+    assert all(found[key] == whole[key][: len(found[key])] for key in found)
+    assert "it is cut off at byte" in problems_after_reading(path)
+
+
+def test_a_bag_cut_off_before_its_first_block_says_that_nothing_is_left(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1, 200), "bz2", chunk_bytes=10**9)
+    assert "no message comes whole before that" in problems_after_reading(cut_in_its_chunk(path))
 
 
 @pytest.mark.parametrize("missing", [0, 30])
@@ -397,7 +413,7 @@ def test_a_chunk_whose_head_is_gone_is_told(tmp_path):
     assert f"{missing} of 20 messages of /scan are missing" in told
 
 
-def test_messages_that_a_bag_announces_and_does_not_hold_are_told(tmp_path):
+def test_a_bag_whose_index_announces_other_numbers_than_its_chunks_is_scanned(tmp_path):
     path = FORMATS["bag"][0](tmp_path)
     content = bytearray(path.read_bytes())
     # A bag ends with how many messages its last chunk holds of each topic.
@@ -405,7 +421,36 @@ def test_messages_that_a_bag_announces_and_does_not_hold_are_told(tmp_path):
     content[-4:] = struct.pack("<I", 4)
     path.write_bytes(content)
     assert read(path) == recorded.drive_rows(ROS2)
-    assert problems_after_reading(path) == "3 of 23 messages of /odom are missing"
+    assert problems_after_reading(path) == ""
+    assert "index is missing or damaged" in remarks(path)
+
+
+def test_a_damaged_chunk_of_a_bag_without_index_does_not_hide_those_behind_it(tmp_path):
+    path = FORMATS["bag_bz2"][0](tmp_path)
+    content = bytearray(path.read_bytes())
+    at = content.index(b"index_pos=") + len(b"index_pos=")
+    content[at : at + 8] = bytes(8)
+    second = content.index(b"BZh", content.index(b"BZh") + 1)
+    content[second + 20 : second + 40] = bytes(20)
+    path.write_bytes(content)
+    found, whole = read(path), recorded.drive_rows(ROS2)
+    scans = ("scan", "/scan", "laser")
+    assert found[scans][-1] == whole[scans][-1]
+    assert 10 < len(found[scans]) < 20
+    assert "is damaged and left out" in problems_after_reading(path)
+
+
+def test_messages_in_front_of_the_damage_in_a_chunk_of_a_bag_are_read(tmp_path):
+    path = recorded.write_bag(tmp_path / "run.bag", recorded.drive(ROS1), "none", chunk_bytes=10**9)
+    content = bytearray(path.read_bytes())
+    middle = content.index(b"time=", len(content) // 3)
+    content[middle - 4 : middle] = b"\xff" * 4  # the length of a field in a message's header
+    path.write_bytes(content)
+    found, whole = read(path), recorded.drive_rows(ROS2)
+    scans = ("scan", "/scan", "laser")
+    assert 3 < len(found[scans]) < 15
+    assert all(found[key] == whole[key][: len(found[key])] for key in found)
+    assert "is damaged; what comes before in it is read" in problems_after_reading(path)
 
 
 def test_an_mcap_with_a_summary_is_not_read_whole_to_open_it(tmp_path, monkeypatch):
@@ -447,7 +492,10 @@ def test_an_uncompressed_length_that_cannot_be_is_not_believed(tmp_path):
     struct.pack_into("<Q", content, second.chunk_start_offset + 9 + 16, 1 << 50)
     path.write_bytes(content)
     assert len(read(path)["scan", "/scan", "laser"]) < 20
-    assert "is damaged and left out: its length is wrong" in problems_after_reading(path)
+    assert (
+        "it says it holds 1125899906842624 bytes, more than 268435456 are not read"
+        in problems_after_reading(path)
+    )
 
 
 def test_mcap_without_counts_of_its_channels(tmp_path, monkeypatch):

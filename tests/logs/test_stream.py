@@ -136,6 +136,13 @@ def test_stamps_before_1970_are_malformed():
     assert counts.dropped == {"malformed": 2}
 
 
+def test_a_scan_beyond_what_its_recording_can_hold_does_not_make_the_others_late():
+    log = FakeRecording([[MOUNT, driving(-5, 5), scans([1, 1e6, 2, 3], log=[1, 2, 3, 4])]])
+    out, counts = replayed(log, latest_ns={0: int(ns(100)[0])})
+    assert seconds(out) == [1, 2, 3]
+    assert counts.dropped == {"ahead": 1}
+
+
 def test_equal_stamps_of_one_topic_are_the_same_scan():
     out, counts = replayed(FakeRecording([[MOUNT, driving(0, 3), scans([1, 1, 2], first=[7, 8, 9])]]))
     assert blocks(out)[0].ranges[:, 0].tolist() == [7, 9]

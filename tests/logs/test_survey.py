@@ -297,3 +297,13 @@ def test_inspection_finds_the_same_poses_however_long_it_waits(tmp_path, monkeyp
     monkeypatch.setattr("timemap_cli.logs.inspect.PATIENCE_NS", 2_000_000_000)
     assert inspect([log], load(None)).logs[0].scans == patient.logs[0].scans
     assert patient.logs[0].scans[0].with_pose == 300
+
+
+def test_no_scan_is_later_than_the_others_by_more_than_a_day(tmp_path):
+    messages = wall_messages()
+    for one in [one for one in messages if one.topic == "/scan"][10:14]:
+        one.content.header.stamp.sec += 10 * 365 * 86400
+    found = surveyed(write_mcap(tmp_path / "a.mcap", messages))
+    end_ns = START_NS + 6 * 10**9
+    day_ns = 86400 * 10**9
+    assert end_ns + day_ns <= found.latest_ns[0] <= end_ns + day_ns + 6 * 10**9

@@ -42,6 +42,12 @@ _SUFFIXES = (".mcap", ".bag", ".db3", ".zstd")
     help="What a beam that did not come back means.",
 )
 @click.option(
+    "--max-dropped",
+    type=float,
+    metavar="SHARE",
+    help="Share of scans that may be lost before exit code 3.",
+)
+@click.option(
     "--start", metavar="TIME", help="Leave out scans before: +10s, end-5s, RFC 3339 or nanoseconds."
 )
 @click.option("--end", metavar="TIME", help="Leave out scans from here on.")
@@ -135,6 +141,7 @@ def _overrides(
     map_frame: str | None,
     poses: str | None,
     no_return: str | None,
+    max_dropped: float | None,
     seed: int | None,
     profile: str | None,
 ) -> dict[str, Any]:
@@ -143,6 +150,7 @@ def _overrides(
         "map_frame": map_frame,
         "poses": poses,
         "no_return": no_return,
+        "max_dropped": max_dropped,
         "scan_topics": scan_topics or None,
     }
     top = {"input": {key: value for key, value in given.items() if value is not None}}

@@ -57,6 +57,8 @@ class BagFile:
         counts: Counter[int] = Counter()
         for span in self._spans:
             counts.update(span.counts)
+        if nameless := sum(count for key, count in counts.items() if key not in found):
+            self.problems.append(f"{nameless} messages are of no known topic and left out")
         self.connections = tuple(replace(found[key], count=counts[key]) for key in sorted(found))
         self.start_ns = min((span.start_ns for span in self._spans), default=0)
         self.end_ns = max((span.end_ns for span in self._spans), default=0)
@@ -90,7 +92,12 @@ class BagFile:
             data = np.frombuffer(content, np.uint8)
             entries = records.from_index(data, self._index(chunk.stop, len(span.counts)))
             if entries is None or {key: len(entries[key][0]) for key in entries} != span.counts:
-                entries = records.walk(content)
+                whole = records.whole_records(content)
+                entries = records.walk(whole)
+                if len(whole) < len(content):
+                    self.problems.append(
+                        f"the chunk at byte {span.offset} is damaged; what comes before in it is read"
+                    )
         except (DamagedBagError, struct.error) as error:
             self.problems.append(f"the chunk at byte {span.offset} is damaged and left out: {error}")
             return []
@@ -113,9 +120,7 @@ class BagFile:
         """Uncompressed records of a chunk; of one that the end of the file cuts off, those that are whole."""
         if chunk.stop <= self._size:
             return records.chunk_content(chunk, records.record_data(self._file, chunk))
-        if chunk.fields.get("compression") != b"none":
-            raise DamagedBagError("it is cut off")
-        return records.whole_records(records.record_data(self._file, replace(chunk, stop=self._size)))
+        return records.cut_content(chunk, records.record_data(self._file, replace(chunk, stop=self._size)))
 
     def _index(self, position: int, count: int) -> list[tuple[int, bytes]]:
         """The ``count`` index records behind a chunk, as far as there are so many."""
@@ -139,15 +144,16 @@ class BagFile:
         size = self._size
         found: dict[int, Connection] = {}
         spans: list[BagSpan] = []
-        position = header.stop
+        position, chunks = header.stop, 0
         try:
             while position < size:
                 record = records.file_record(self._file, position)
                 if record.op == records.CHUNK:
-                    content = self._whole(record)
+                    chunks += 1
+                    content = self._scanned(record, position)
                     found |= _connections(content)
                     spans += _walked_span(position, content)
-                    if not content and (rest := self._unclosed(record, size)):
+                    if record.stop == record.start and (rest := self._unclosed(record, size)):
                         found |= _connections(rest)
                         spans += _walked_span(position, rest, record.stop + len(rest))
                         self.problems.append(
@@ -155,6 +161,9 @@ class BagFile:
                         )
                         return found, spans
                 elif record.op == records.CONNECTION:
+                    one = records.connection(record, records.record_data(self._file, record))
+                    found.setdefault(one.id, one)
+                elif record.op == records.CHUNK_INFO:
                     break
                 if record.stop > size:
                     raise DamagedBagError("it is cut off")
@@ -162,8 +171,28 @@ class BagFile:
         except (DamagedBagError, struct.error):
             self.problems.append(_cut_off(position, size, spans))
         else:
-            self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
+            self._tell_of_index(header, position, spans, chunks)
         return found, spans
+
+    def _tell_of_index(
+        self, header: records.Record, position: int, spans: list[BagSpan], chunks: int
+    ) -> None:
+        """Say that there is no index, and what is missing with it."""
+        if _lacks_chunks(header, self._size, chunks):
+            self.problems.append(_cut_off(position, self._size, spans))
+        elif not spans:
+            self.problems.append("it is damaged, and no message is left in it")
+        self.remarks.append("its index is missing or damaged, as after a crash; all of it is read")
+
+    def _scanned(self, chunk: records.Record, position: int) -> bytes:
+        """The whole records of a chunk; none, and an entry in ``problems``, where it is damaged."""
+        try:
+            return records.whole_records(self._whole(chunk))
+        except DamagedBagError as error:
+            if chunk.stop > self._size:
+                raise
+            self.problems.append(f"the chunk at byte {position} is damaged and left out: {error}")
+            return b""
 
     def _unclosed(self, chunk: records.Record, size: int) -> bytes:
         """The whole records behind the head of a chunk that was being written; empty where there is no message.
@@ -180,6 +209,14 @@ class BagFile:
         except DamagedBagError:
             pass
         return content[:stop] if records.MESSAGE in ops else b""
+
+
+def _lacks_chunks(header: records.Record, size: int, chunks: int) -> bool:
+    """Whether a bag ends between two records, in front of where its head says that the index is, and lacks chunks."""
+    try:
+        return header.number("index_pos") > size and chunks < header.number("chunk_count")
+    except DamagedBagError:
+        return False
 
 
 def _cut_off(position: int, size: int, spans: list[BagSpan]) -> str:
@@ -205,8 +242,11 @@ def _walked_span(position: int, content: bytes, stop: int | None = None) -> list
 
 
 def _read_index(file: IO[bytes], header: records.Record) -> tuple[dict[int, Connection], list[BagSpan]]:
-    """Connections and chunks as the index at the end of the bag lists them."""
-    position = header.number("index_pos")
+    """Connections and chunks as the index at the end of the bag lists them.
+
+    DamagedBagError where it does not list what stands in front of it.
+    """
+    index_at = position = header.number("index_pos")
     if header.op != records.BAG_HEADER or position == 0:
         raise DamagedBagError("it has no index")
     found: dict[int, Connection] = {}
@@ -218,10 +258,31 @@ def _read_index(file: IO[bytes], header: records.Record) -> tuple[dict[int, Conn
     spans = []
     for _ in range(header.number("chunk_count")):
         record = records.file_record(file, position)
-        counted = struct.iter_unpack("<II", records.record_data(file, record))
-        counts = {key: count for key, count in counted if count}
-        if counts:
-            start_ns, end_ns = record.time_ns("start_time"), record.time_ns("end_time")
-            spans.append(BagSpan(record.number("chunk_pos"), start_ns, end_ns, counts))
+        counts = dict(struct.iter_unpack("<II", records.record_data(file, record)))
+        start_ns, end_ns = record.time_ns("start_time"), record.time_ns("end_time")
+        spans.append(BagSpan(record.number("chunk_pos"), start_ns, end_ns, counts))
         position = record.stop
-    return found, spans
+    listed = {span.offset: span.counts for span in spans}
+    if listed != dict(_chunks_before(file, header.stop, index_at)) or len(listed) != len(spans):
+        raise DamagedBagError("its index does not list its chunks")
+    if not all(span.counts.keys() <= found.keys() for span in spans):
+        raise DamagedBagError("its index does not list its connections")
+    return found, [span for span in spans if any(span.counts.values())]
+
+
+def _chunks_before(file: IO[bytes], position: int, index_at: int) -> Iterator[tuple[int, dict[int, int]]]:
+    """Where each chunk begins and how many messages of each connection are in it, by the heads of the records.
+
+    The data of the chunks is not read.
+    """
+    while position < index_at:
+        chunk = records.file_record(file, position)
+        if chunk.op != records.CHUNK:
+            raise DamagedBagError("there is no chunk")
+        counts: dict[int, int] = {}
+        stop = chunk.stop
+        while stop < index_at and (record := records.file_record(file, stop)).op == records.INDEX:
+            counts[record.number("conn")] = record.number("count")
+            stop = record.start + record.number("count") * records.INDEX_ENTRY.itemsize
+        yield position, counts
+        position = stop

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import bz2
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import IO
 
-import lz4.frame  # type: ignore[import-untyped]
 import numpy as np
 
+from timemap_cli.logs.bounds import MOST_CHUNK_BYTES, TooLargeError, decompressed
 from timemap_cli.logs.raw import Bytes, Connection, Int64s, ros2_name, windows
 
 MESSAGE, BAG_HEADER, INDEX, CHUNK, CHUNK_INFO, CONNECTION = 2, 3, 4, 5, 6, 7  # values of a record's op
 SECOND_NS = 1_000_000_000
 SMALL_BYTES = 1 << 20
+LARGEST_FILE = 1 << 62  # no position is beyond
 INDEX_ENTRY = np.dtype([("sec", "<u4"), ("nsec", "<u4"), ("offset", "<u4")])
 
 _uint32 = struct.Struct("<I")
@@ -40,11 +40,14 @@ class Record:
     @property
     def op(self) -> int:
         """What kind of record it is; 0 where it does not say."""
-        return self.fields.get("op", b"\0")[0]
+        return (self.fields.get("op") or b"\0")[0]
 
     def number(self, name: str) -> int:
         """An unsigned number in the header; DamagedBagError where it is missing."""
-        return int.from_bytes(self.bytes(name), "little")
+        value = int.from_bytes(self.bytes(name)[:9], "little")
+        if value >= 1 << 64:
+            raise DamagedBagError(f"a record's {name!r} is no number")
+        return value
 
     def time_ns(self, name: str) -> int:
         """A time in the header [ns]."""
@@ -75,6 +78,8 @@ def header_fields(header: bytes) -> Fields:
 
 def file_record(file: IO[bytes], position: int) -> Record:
     """The record at this place of the file, its data left where it is; DamagedBagError where there is none."""
+    if position >= LARGEST_FILE:
+        raise DamagedBagError("it is cut off")
     file.seek(position)
     (header_length,) = _uint32.unpack(_read(file, 4))
     fields = header_fields(_read(file, header_length))
@@ -84,6 +89,8 @@ def file_record(file: IO[bytes], position: int) -> Record:
 
 
 def _read(file: IO[bytes], length: int) -> bytes:
+    if length > MOST_CHUNK_BYTES:
+        raise DamagedBagError(f"it is {length} bytes long, more than {MOST_CHUNK_BYTES} are not read")
     if length > SMALL_BYTES:  # so much memory is taken before it turns out that the file ends
         position = file.tell()
         if position + length > file.seek(0, 2):
@@ -133,19 +140,29 @@ def connection(record: Record, data: bytes) -> Connection:
 
 def chunk_content(record: Record, data: bytes) -> bytes:
     """Uncompressed records of a chunk; DamagedBagError where they cannot be had."""
-    compression = record.bytes("compression")
+    content = _unpacked(record, data)
+    if len(content) != (size := record.number("size")):
+        amount = f"more than {size}" if len(content) > size else f"{len(content)} bytes instead of {size}"
+        raise DamagedBagError(f"it holds {amount}")
+    return content
+
+
+def cut_content(record: Record, data: bytes) -> bytes:
+    """The whole records at the beginning of a chunk that the end of the file cuts off; none may be whole."""
+    return whole_records(_unpacked(record, data))
+
+
+def _unpacked(record: Record, data: bytes) -> bytes:
+    """What a chunk holds, which may be less than it announces, or one byte more."""
+    compression = record.bytes("compression").decode("utf-8", "replace")
+    if compression not in ("none", "bz2", "lz4"):
+        raise DamagedBagError(f"its compression {compression[:20]!r} is unknown")
     try:
-        if compression == b"bz2":
-            data = bz2.decompress(data)
-        elif compression == b"lz4":
-            data = lz4.frame.decompress(data)
-        elif compression != b"none":
-            raise DamagedBagError(f"its compression {compression.decode('utf-8', 'replace')!r} is unknown")
+        return data if compression == "none" else decompressed(compression, data, record.number("size"))
+    except TooLargeError as error:
+        raise DamagedBagError(str(error)) from error
     except (OSError, EOFError, ValueError, RuntimeError, MemoryError) as error:
         raise DamagedBagError(f"it cannot be decompressed ({error})") from error
-    if len(data) != record.number("size"):
-        raise DamagedBagError(f"it holds {len(data)} bytes instead of {record.number('size')}")
-    return data
 
 
 def whole_records(content: bytes) -> bytes:

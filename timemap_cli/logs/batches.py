@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,17 @@ class ScanBatch:
     ranges: Float32s  # (n, layout.count) [m]
     range_max: Float32s  # (n,) [m]
     time_increment: Float32s  # (n,) [s] from one beam to the next
+
+    def chosen(self, rows: slice | NDArray[np.bool_]) -> ScanBatch:
+        """The chosen scans alone."""
+        return replace(
+            self,
+            stamps_ns=self.stamps_ns[rows],
+            log_ns=self.log_ns[rows],
+            ranges=self.ranges[rows],
+            range_max=self.range_max[rows],
+            time_increment=self.time_increment[rows],
+        )
 
 
 @dataclass(frozen=True, slots=True)

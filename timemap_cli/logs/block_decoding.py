@@ -11,6 +11,7 @@ from timemap_cli.logs.batches import (
     BadBatch,
     Batch,
     BeamLayout,
+    Float32s,
     Int64s,
     PoseBatch,
     ScanBatch,
@@ -20,8 +21,13 @@ from timemap_cli.logs.message_types import MESSAGE_TYPES, Kind
 from timemap_cli.logs.raw import RawMessages
 from timemap_cli.logs.tracing import Element, Trace
 
-MALFORMED = "malformed"
+# Why a message gives nothing: its bytes are not what its type asks for, or what it says cannot be used.
+UNDECODABLE, MALFORMED, MISMATCHED = "undecodable", "malformed", "mismatched"
+MOST_BEAMS = 100_000  # of a scan; the finest scanners have some ten thousand
+MOST_ANGLE = 4 * np.pi  # [rad] for the first bearing, and for what a scan spans: degrees are no radians
+SPARE_BEAMS, SPARE_SHARE = 2, 0.05  # by which the beams may differ from what the angles say
 SECOND_NS = 1_000_000_000
+NO_STAMP_NS = -SECOND_NS  # stands for a stamp that is none
 POSE_BYTES = 7 * 8
 COVARIANCE_BYTES = 36 * 8
 SCAN_NUMBERS = 7  # angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max
@@ -39,13 +45,19 @@ def _scans(messages: RawMessages, trace: Trace) -> Iterator[Batch]:
     topic, count = messages.connection.topic, element.lengths["ranges"]
     numbers = messages.columns(element.offsets["angle_min"], 4 * SCAN_NUMBERS).view("<f4")
     keys = np.ascontiguousarray(numbers[:, LAYOUT_NUMBERS]).view("<u4")
-    for key, chosen in _same_rows(keys):
+    for key, alike in _same_rows(keys):
         angle_min, angle_increment, range_min = key.view("<f4").tolist()
         layout = BeamLayout(angle_min, angle_increment, count, range_min)
-        part = messages[chosen]
         if not has_beams(layout):
-            yield BadBatch(topic, MALFORMED, len(part))
+            yield BadBatch(topic, MALFORMED, len(alike))
             continue
+        fits = fits_angles(layout, numbers[alike, 1])
+        if not fits.all():
+            yield BadBatch(topic, MISMATCHED, int(np.count_nonzero(~fits)))
+            if not fits.any():
+                continue
+        chosen = alike[fits]
+        part = messages[chosen]
         yield ScanBatch(
             topic=topic,
             frame_id=frame_name(element.texts["header.frame_id"]),
@@ -102,11 +114,11 @@ _READERS: dict[Kind, Callable[[RawMessages, Trace], Iterator[Batch]]] = {
 
 
 def _stamps(messages: RawMessages, element: Element) -> Int64s:
-    """Header stamps (n,) [ns]."""
+    """Header stamps (n,) [ns]; where nanoseconds are a second or more, one before all times."""
     words = messages.columns(element.offsets["header.stamp.sec"], 8)
     seconds = words[:, :4].view("<i4")[:, 0].astype(np.int64)
     nanoseconds = words[:, 4:].view("<u4")[:, 0].astype(np.int64)
-    return seconds * SECOND_NS + nanoseconds
+    return np.where(nanoseconds < SECOND_NS, seconds * SECOND_NS + nanoseconds, NO_STAMP_NS)
 
 
 def _same_rows(rows: NDArray[np.uint32]) -> Iterator[tuple[NDArray[np.uint32], NDArray[np.int64]]]:
@@ -120,8 +132,23 @@ def _same_rows(rows: NDArray[np.uint32]) -> Iterator[tuple[NDArray[np.uint32], N
 
 
 def has_beams(layout: BeamLayout) -> bool:
-    """Whether there are beams and it is known where they look."""
-    return layout.count > 0 and bool(np.isfinite([layout.angle_min, layout.angle_increment]).all())
+    """Whether there are beams, not more than a scanner has, and it is known where they look."""
+    span = abs(layout.angle_increment) * (layout.count - 1)
+    return 0 < layout.count <= MOST_BEAMS and abs(layout.angle_min) <= MOST_ANGLE and span <= MOST_ANGLE
+
+
+def fits_angles(layout: BeamLayout, angle_max: Float32s) -> NDArray[np.bool_]:
+    """Whether there are as many beams as the angles ask for, by each ``angle_max`` (n,); drivers are off by one or two.
+
+    An ``angle_max`` that was never set, or lies on the other side, says nothing.
+    """
+    with np.errstate(all="ignore"):
+        span = angle_max.astype(np.float64) - layout.angle_min
+        wanted = span / layout.angle_increment + 1
+        says_something = np.isfinite(wanted) & (span * layout.angle_increment > 0)
+        fits = np.abs(wanted - layout.count) <= max(SPARE_BEAMS, SPARE_SHARE * layout.count)
+    result: NDArray[np.bool_] = fits | ~says_something
+    return result
 
 
 def frame_name(recorded: str) -> str:

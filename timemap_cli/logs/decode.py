@@ -8,9 +8,11 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 import zstandard
+from numpy.typing import NDArray
 
 from timemap_cli.logs.batches import BadBatch, Batch, PoseBatch, ScanBatch, TransformBatch
-from timemap_cli.logs.block_decoding import MALFORMED, decode_block
+from timemap_cli.logs.block_decoding import UNDECODABLE, decode_block
+from timemap_cli.logs.bounds import MOST_MESSAGE_BYTES, decompressed
 from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache
 from timemap_cli.logs.raw import RawMessages, from_messages
 from timemap_cli.logs.single_decoding import decode_singly
@@ -52,18 +54,34 @@ def _decompressed(messages: RawMessages) -> tuple[RawMessages, list[Batch]]:
     The first bytes tell: those of a zstd frame are no CDR encapsulation header.
     """
     connection = messages.connection
-    if connection.encoding != "cdr" or not len(messages) or messages.message(0)[:4] != ZSTD_MAGIC:
+    if connection.encoding != "cdr" or not _are_packed(messages).any():
         return messages, []
     times, contents = [], []
     for index in range(len(messages)):
         try:
-            contents.append(zstandard.ZstdDecompressor().decompressobj().decompress(messages.message(index)))
+            contents.append(_unpacked(messages.message(index)))
             times.append(int(messages.log_ns[index]))
-        except zstandard.ZstdError:
+        except (zstandard.ZstdError, MemoryError):
             continue
     n_bad = len(messages) - len(times)
-    bad: list[Batch] = [BadBatch(connection.topic, MALFORMED, n_bad)] if n_bad else []
+    bad: list[Batch] = [BadBatch(connection.topic, UNDECODABLE, n_bad)] if n_bad else []
     return from_messages(connection, times, contents), bad
+
+
+def _are_packed(messages: RawMessages) -> NDArray[np.bool_]:
+    """Which of the messages that are long enough (n,) begin like a zstd frame."""
+    long_enough = messages[messages.sizes >= len(ZSTD_MAGIC)]
+    packed: NDArray[np.bool_] = (
+        long_enough.columns(0, len(ZSTD_MAGIC)) == np.frombuffer(ZSTD_MAGIC, np.uint8)
+    ).all(axis=1)
+    return packed
+
+
+def _unpacked(message: bytes) -> bytes:
+    """A message without its compression, cut where it is longer than any that is read."""
+    if not message.startswith(ZSTD_MAGIC):
+        return message
+    return decompressed("zstd", message, MOST_MESSAGE_BYTES)
 
 
 def merged(batches: Iterable[Batch]) -> list[Batch]:

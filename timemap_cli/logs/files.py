@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import zstandard
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.logs.announced_counts import announced_counts
 from timemap_cli.logs.bag_file import BagFile
+from timemap_cli.logs.bounds import MOST_CHUNK_BYTES
+from timemap_cli.logs.foreign_errors import FOREIGN_ERRORS, reason
 from timemap_cli.logs.listed_names import listed_names
 from timemap_cli.logs.mcap_file import McapFile
 from timemap_cli.logs.raw import Storage
@@ -27,6 +31,9 @@ READERS: dict[bytes, Callable[[Path], Storage]] = {
 }
 READABLE = "a ROS 1 bag, a ROS 2 bag (its folder or a file of it) or an MCAP file"
 METADATA = "metadata.yaml"
+# A compressed file is unpacked on the disk: to so many times its size, and so many bytes at least.
+MOST_TIMES, LEAST_BYTES = 200, 64 << 20
+PACKED_BYTES = 1024
 RESULT_RECORD = "timemap"  # name of the metadata record in every result of ours
 
 
@@ -45,30 +52,57 @@ def open_files(path: Path, stack: ExitStack) -> OpenFiles:
     ``stack`` closes them. Raises UsageError where there is no recording, and what the readers raise.
     """
     if path.is_dir():
-        paths, problems, remarks = _files_of_folder(path)
+        listed = _files_of_folder(path)
     elif path.exists():
-        paths, problems, remarks = [path], [], []
+        listed = _Listed([path])
     else:
         raise no_such_file(path, READABLE)
-    storages = [_open_file(one, stack) for one in paths]
+    paths, problems = listed.paths, list(listed.problems)
+    storages: list[Storage] = []
+    for one in paths:
+        try:
+            storages.append(_open_file(one, stack))
+        except (TimemapError, *FOREIGN_ERRORS) as error:
+            # Of several files of a recording the others are read.
+            if len(paths) == 1 or isinstance(error, ResultGivenError):
+                raise
+            problems.append(f"{one.name} cannot be read and is left out: {reason(error, one)}")
+    if not storages:
+        raise UsageError(f"{path} holds no recording that can be read ({'; '.join(problems)})", hint=READABLE)
     storages.sort(key=lambda storage: storage.start_ns)
-    return OpenFiles(storages, problems, remarks)
+    return OpenFiles(storages, problems or _shortfalls(listed.counts, storages), listed.remarks)
+
+
+def _shortfalls(announced: Mapping[str, int], storages: Sequence[Storage]) -> list[str]:
+    """A sentence for every topic of which the metadata of a folder announces more than its files hold."""
+    held: Counter[str] = Counter()
+    for one in (connection for storage in storages for connection in storage.connections):
+        held[one.topic] += one.count
+    return [
+        f"{METADATA} announces {count} messages of {topic}, and {held[topic]} are there"
+        for topic, count in announced.items()
+        if held[topic] < count
+    ]
+
+
+class ResultGivenError(UsageError):
+    """A result of ours is given as a recording."""
 
 
 def _open_file(path: Path, stack: ExitStack) -> Storage:
-    head = _head(path)
+    head, source, damage = _head(path), path, ""
     if head.startswith(ZSTD_MAGIC):
-        unpacked = _decompressed(path, stack)
-        head, source = _head(unpacked), unpacked
-    else:
-        source = path
+        source, damage = _decompressed(path, stack)
+        head = _head(source)
     reader = _reader(head)
     if reader is None:
-        raise _refusal(path, head)
+        raise _refusal(path, head, damage)
     storage = reader(source)
     stack.callback(storage.close)
+    if damage:
+        storage.problems.insert(0, damage)
     if isinstance(storage, McapFile) and RESULT_RECORD in storage.metadata_names:
-        raise UsageError(
+        raise ResultGivenError(
             f"{path} is a result of timemap, not a recording",
             hint=f"timemap diff {path} --level long mid",
         )
@@ -84,8 +118,10 @@ def _head(path: Path) -> bytes:
         return file.read(32)
 
 
-def _refusal(path: Path, head: bytes) -> TimemapError:
+def _refusal(path: Path, head: bytes, damage: str) -> TimemapError:
     """What to say about a file that is no recording we read."""
+    if damage:
+        return TimemapError(f"{path} cannot be read: {damage.partition(';')[0]}")
     if old := OLD_BAG.match(head):
         version = old.group(1).decode()
         return UsageError(
@@ -96,25 +132,45 @@ def _refusal(path: Path, head: bytes) -> TimemapError:
     return UsageError(f"{path} is not a recording: {reason}", hint=READABLE)
 
 
-def _decompressed(path: Path, stack: ExitStack) -> Path:
-    """The file without its compression, in a temporary folder that ``stack`` removes."""
+def _decompressed(path: Path, stack: ExitStack) -> tuple[Path, str]:
+    """The file without its compression, in a temporary folder that ``stack`` removes, and what is wrong with it."""
     folder = stack.enter_context(TemporaryDirectory(prefix="timemap-"))
     target = Path(folder) / path.stem
+    most = max(LEAST_BYTES, MOST_TIMES * path.stat().st_size)
+    unpacking = zstandard.ZstdDecompressor(max_window_size=MOST_CHUNK_BYTES).decompressobj()
     with path.open("rb") as packed, target.open("wb") as unpacked:
-        zstandard.ZstdDecompressor().copy_stream(packed, unpacked)
-    return target
+        try:
+            # A kilobyte holds up to 32 MB.
+            while not unpacking.eof and (block := packed.read(PACKED_BYTES)):
+                unpacked.write(unpacking.decompress(block))
+                if unpacked.tell() > most:
+                    return target, f"it unpacks to more than {most} bytes; what comes before is read"
+        except zstandard.ZstdError as error:
+            return target, f"its compression is damaged ({error}); what comes before is read"
+    return target, "" if unpacking.eof else "it is cut off; what could be unpacked is read"
 
 
-def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
-    """The storage files of a bag folder, those its metadata names or all where it has none; problems and remarks."""
+@dataclass(frozen=True, slots=True)
+class _Listed:
+    """The files of a recording, and how many messages of each topic its metadata announces."""
+
+    paths: Sequence[Path]
+    problems: Sequence[str] = ()
+    remarks: Sequence[str] = ()
+    counts: Mapping[str, int] = field(default_factory=dict)
+
+
+def _files_of_folder(folder: Path) -> _Listed:
+    """The storage files of a bag folder, those its metadata names or all where it has none."""
     try:
         names = listed_names(folder / METADATA)
     except FileNotFoundError:
-        return _found_files(folder), [], []
+        return _Listed(_found_files(folder))
     except ValueError:
-        return _found_files(folder), [], [f"{METADATA} cannot be read; all files beside it are"]
+        return _Listed(_found_files(folder), remarks=[f"{METADATA} cannot be read; all files beside it are"])
+    counts = announced_counts(folder / METADATA)
     paths, problems = [], []
-    for name in names:
+    for name in dict.fromkeys(name for name in names if name and "\0" not in name):
         # Older rosbag2 names a compressed file without the suffix it gave it.
         either = (folder / name, folder / f"{name}.zstd")
         present = [one for one in either if one.is_file() or one.is_dir()]  # opening a pipe would wait
@@ -122,9 +178,13 @@ def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
             paths.append(present[0])
         else:
             problems.append(f"{name} is missing, although {METADATA} names it")
-    if not paths:
-        raise UsageError(f"{folder} holds none of the files that its {METADATA} names")
-    return paths, problems, []
+    if paths:
+        return _Listed(paths, problems, counts=counts)
+    try:
+        found = _found_files(folder)
+    except UsageError as error:
+        raise UsageError(f"{folder} holds none of the files that its {METADATA} names") from error
+    return _Listed(found, remarks=[f"{METADATA} names other files; those beside it are read"], counts=counts)
 
 
 def _found_files(folder: Path) -> list[Path]:

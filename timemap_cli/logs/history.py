@@ -22,8 +22,9 @@ NO_PARENT = -1
 
 def usable(translation: Float64s, rotation: Float64s) -> tuple[Bools, Float64s]:
     """Tell which samples (n,) are poses at all; return the quaternions (n, 4), normalised where they are."""
-    squares = rotation * rotation
-    norm = np.sqrt(squares[:, 0] + squares[:, 1] + squares[:, 2] + squares[:, 3])
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers that damage made
+        squares = rotation * rotation
+        norm = np.sqrt(squares[:, 0] + squares[:, 1] + squares[:, 2] + squares[:, 3])
     good = np.isfinite(norm) & (norm > LEAST_NORM) & (np.abs(translation) <= FARTHEST_M).all(axis=1)
     return good, rotation / np.where(good, norm, 1.0)[:, None]
 

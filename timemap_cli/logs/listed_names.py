@@ -21,7 +21,8 @@ from ruamel.yaml.events import (
     ScalarEvent,
 )
 
-_LIST = ["rosbag2_bagfile_information", "relative_file_paths", None]
+INFORMATION = "rosbag2_bagfile_information"
+_LIST = [INFORMATION, "relative_file_paths", None]
 _MOST_CHARACTERS = 4_000_000  # ten thousand parts and a thousand topics need half of it
 _DEEPEST = 20
 
@@ -40,7 +41,7 @@ def listed_names(metadata: Path) -> list[str]:
 
 
 @dataclass(slots=True)
-class _Open:
+class Open:
     """A mapping or sequence that has begun and not ended."""
 
     is_mapping: bool
@@ -53,13 +54,13 @@ class _Open:
 
 
 def _paths(events: Iterable[Any]) -> list[str]:
-    opened: list[_Open] = []
+    opened: list[Open] = []
     found: list[str] = []
     for event in events:
         if isinstance(event, CollectionStartEvent):
             if len(opened) == _DEEPEST:
                 break
-            opened.append(_Open(isinstance(event, MappingStartEvent)))
+            opened.append(Open(isinstance(event, MappingStartEvent)))
             continue
         is_in_list = [one.key for one in opened] == _LIST and not opened[-1].is_mapping
         if isinstance(event, CollectionEndEvent):

@@ -1,12 +1,10 @@
-"""What an MCAP file holds and where: from its summary, or from a scan of the whole file where there is none."""
+"""What an MCAP file holds and where, as its summary tells."""
 
 from __future__ import annotations
 
 import struct
 import zlib
-from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from io import BytesIO
 from typing import IO
 
@@ -14,15 +12,16 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
-from mcap.records import Channel, ChunkIndex, Header, Metadata, Schema
+from mcap.records import Channel, ChunkIndex, Header, Schema
 from mcap.summary import Summary
 
 from timemap_cli.logs.chunked import ChunkSpan
-from timemap_cli.logs.mcap_chunks import MESSAGE_HEAD, RECORD_HEAD, DamagedChunkError, chunk_content
+from timemap_cli.logs.mcap_chunks import LATEST_NS
 
 FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, of its offsets, CRC
 MAGIC = b"\x89MCAP0\r\n"
-LONGEST_RUN = 4 << 20  # messages outside of chunks are taken together up to this many bytes
+MOST_SUMMARY_BYTES = 64 << 20  # a chunk of 1 MB takes a few hundred
+BLOCK_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +32,7 @@ class McapSpan(ChunkSpan):
     index_length: int  # of the message index records behind it [bytes]
     channels: frozenset[int] | None  # whose messages are in it, None if unknown
     is_run: bool
+    is_cut: bool = False  # a chunk that the end of the file cuts off
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,33 +46,42 @@ class Contents:
     start_ns: int
     end_ns: int
     metadata_names: frozenset[str]
-    problem: str | None
+    problems: tuple[str, ...] = ()  # what is damaged
+    remarks: tuple[str, ...] = ()  # what is odd and costs nothing
 
 
-def read_profile(file: IO[bytes]) -> str:
-    """The profile of the header record."""
-    stream = ReadDataStream(file)
-    if file.read(len(MAGIC)) != MAGIC or stream.read1() != Opcode.HEADER:
-        raise ValueError("it does not begin like an MCAP file")
-    stream.read8()
-    return str(Header.read(stream).profile)
+def read_profile(file: IO[bytes]) -> str | None:
+    """The profile of the header record; None where that is damaged."""
+    file.seek(len(MAGIC))
+    head = file.read(BLOCK_BYTES)
+    if not head:
+        raise ValueError("it is cut off behind its first bytes")
+    stream = ReadDataStream(BytesIO(head[9:]))
+    try:
+        return str(Header.read(stream).profile) if head[0] == Opcode.HEADER else None
+    except (McapError, ValueError, struct.error):
+        return None
 
 
 def from_summary(file: IO[bytes]) -> Contents | None:
     """What the summary at the end of the file tells; None where it does not tell all we need."""
     size = file.seek(0, 2)
-    if not _is_undamaged(file, size):
+    if not is_undamaged(file, size):
         return None
     file.seek(0)
     try:
-        summary = SeekingReader(file, record_size_limit=size).get_summary()
+        summary = SeekingReader(file, record_size_limit=MOST_SUMMARY_BYTES).get_summary()
     except (McapError, ValueError, struct.error, OSError):
         return None
     if summary is None or summary.statistics is None or not _is_complete(summary):
         return None
     statistics = summary.statistics
     spans = [_span(index) for index in summary.chunk_indexes]
-    if any(span.offset + span.length + span.index_length > size for span in spans):
+    if (
+        not _lie_apart(spans, size)
+        or max(statistics.message_start_time, statistics.message_end_time, *(s.end_ns for s in spans))
+        > LATEST_NS
+    ):
         return None
     return Contents(
         schemas=summary.schemas,
@@ -82,11 +91,20 @@ def from_summary(file: IO[bytes]) -> Contents | None:
         start_ns=statistics.message_start_time,
         end_ns=statistics.message_end_time,
         metadata_names=frozenset(index.name for index in summary.metadata_indexes),
-        problem=None,
     )
 
 
-def _is_undamaged(file: IO[bytes], size: int) -> bool:
+def _lie_apart(spans: list[McapSpan], size: int) -> bool:
+    """Whether no two chunks share bytes, and all are within the file."""
+    stop = len(MAGIC)
+    for span in sorted(spans, key=lambda one: one.offset):
+        if span.offset < stop:
+            return False
+        stop = span.offset + span.length + span.index_length
+    return stop <= size
+
+
+def is_undamaged(file: IO[bytes], size: int) -> bool:
     """Whether there is a summary, and its checksum, where it has one, is right."""
     end = size - len(MAGIC) - FOOTER.size
     if end < len(MAGIC):
@@ -94,7 +112,7 @@ def _is_undamaged(file: IO[bytes], size: int) -> bool:
     file.seek(end)
     footer = file.read(FOOTER.size)
     opcode, _, begin, _, crc = FOOTER.unpack(footer)
-    if opcode != Opcode.FOOTER or not len(MAGIC) <= begin <= end:
+    if opcode != Opcode.FOOTER or not len(MAGIC) <= begin <= end or end - begin > MOST_SUMMARY_BYTES:
         return False
     file.seek(begin)
     summary = file.read(end - begin)
@@ -130,96 +148,3 @@ def _span(index: ChunkIndex) -> McapSpan:
         channels=frozenset(index.message_index_offsets) or None,
         is_run=False,
     )
-
-
-@dataclass(slots=True)
-class _Tally:
-    """What a scan has found so far."""
-
-    schemas: dict[int, Schema] = field(default_factory=dict)
-    channels: dict[int, Channel] = field(default_factory=dict)
-    counts: Counter[int] = field(default_factory=Counter)
-    metadata_names: set[str] = field(default_factory=set)
-    spans: list[McapSpan] = field(default_factory=list)
-    problem: str | None = None
-
-    def add_span(self, offset: int, content: bytes, length: int, is_run: bool) -> None:
-        """Take in the records of one chunk, or of one run of records outside of chunks."""
-        times: list[int] = []
-        channels: set[int] = set()
-        for opcode, body in _records(content):
-            if opcode == Opcode.SCHEMA:
-                schema = Schema.read(ReadDataStream(BytesIO(body)))
-                self.schemas[schema.id] = schema
-            elif opcode == Opcode.CHANNEL:
-                channel = Channel.read(ReadDataStream(BytesIO(body)))
-                self.channels[channel.id] = channel
-            elif opcode == Opcode.METADATA:
-                self.metadata_names.add(Metadata.read(ReadDataStream(BytesIO(body))).name)
-            elif opcode == Opcode.MESSAGE and len(body) >= MESSAGE_HEAD.size:
-                key, _, log_ns, _ = MESSAGE_HEAD.unpack_from(body)
-                channels.add(key)
-                self.counts[key] += 1
-                times.append(log_ns)
-        if times:
-            found = frozenset(channels)
-            self.spans.append(McapSpan(offset, min(times), max(times), length, 0, found, is_run))
-
-
-def scan(file: IO[bytes]) -> Contents:
-    """What the file holds, found by reading all of it as far as it goes."""
-    tally = _Tally()
-    for offset, content, length, is_run in _scanned_spans(file, tally):
-        tally.add_span(offset, content, length, is_run)
-    return Contents(
-        schemas=tally.schemas,
-        channels=tally.channels,
-        counts=dict(tally.counts),
-        spans=tally.spans,
-        start_ns=min((span.start_ns for span in tally.spans), default=0),
-        end_ns=max((span.end_ns for span in tally.spans), default=0),
-        metadata_names=frozenset(tally.metadata_names),
-        problem=tally.problem,
-    )
-
-
-def _scanned_spans(file: IO[bytes], tally: _Tally) -> Iterator[tuple[int, bytes, int, bool]]:
-    """(offset, records, length in the file, whether it is a run) of chunks, and of runs of records between them."""
-    size = file.seek(0, 2)
-    position = len(MAGIC)
-    run: list[bytes] = []
-    while True:
-        file.seek(position)
-        head = file.read(RECORD_HEAD.size)
-        opcode, length = RECORD_HEAD.unpack(head) if len(head) == RECORD_HEAD.size else (0, 0)
-        end = position + RECORD_HEAD.size + length
-        is_over = opcode in (0, Opcode.DATA_END, Opcode.FOOTER) or end > size
-        joins_run = not is_over and opcode in (Opcode.MESSAGE, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA)
-        if run and (not joins_run or sum(map(len, run)) + end - position > LONGEST_RUN):
-            content = b"".join(run)
-            yield position - len(content), content, len(content), True
-            run = []
-        if is_over:
-            if opcode not in (Opcode.DATA_END, Opcode.FOOTER):
-                tally.problem = f"it is cut off at byte {position} of {size}; what comes before is read"
-            return
-        if joins_run:
-            run.append(head + file.read(length))
-        elif opcode == Opcode.CHUNK:
-            try:
-                yield position, chunk_content(head + file.read(length)), end - position, False
-            except DamagedChunkError as error:
-                tally.problem = f"the chunk at byte {position} is damaged and left out: {error}"
-        position = end
-
-
-def _records(content: bytes) -> Iterator[tuple[int, bytes]]:
-    """(opcode, body) of the complete records in ``content``."""
-    position = 0
-    while position + RECORD_HEAD.size <= len(content):
-        opcode, length = RECORD_HEAD.unpack_from(content, position)
-        position += RECORD_HEAD.size
-        if position + length > len(content):
-            return
-        yield opcode, content[position : position + length]
-        position += length

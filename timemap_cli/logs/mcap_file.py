@@ -15,9 +15,11 @@ from typing import IO
 import numpy as np
 from mcap.records import Channel, Schema
 
+from timemap_cli.logs.bounds import MOST_CHUNK_BYTES
 from timemap_cli.logs.chunked import in_log_order, stretches, with_shortfall, within
-from timemap_cli.logs.mcap_chunks import DamagedChunkError, chunk_content, from_index, walk
-from timemap_cli.logs.mcap_contents import McapSpan, from_summary, read_profile, scan
+from timemap_cli.logs.mcap_chunks import DamagedChunkError, chunk_content, from_index, walk, whole_records
+from timemap_cli.logs.mcap_contents import McapSpan, from_summary, read_profile
+from timemap_cli.logs.mcap_scan import scan
 from timemap_cli.logs.raw import Connection, RawMessages, ros2_name
 
 DEFINITION_FORMATS = {"ros2msg": "msg", "ros1msg": "msg", "ros2idl": "idl", "omgidl": "idl"}
@@ -38,11 +40,11 @@ class McapFile:
         except BaseException:
             self._file.close()
             raise
-        self.format = {"ros2": "ROS 2 mcap", "ros1": "MCAP (ros1)"}.get(profile, "MCAP")
+        self.format = {"ros2": "ROS 2 mcap", "ros1": "MCAP (ros1)"}.get(profile or "", "MCAP")
         self.metadata_names = contents.metadata_names
         self.start_ns, self.end_ns = contents.start_ns, contents.end_ns
-        self.remarks: list[str] = []
-        self.problems: list[str] = [contents.problem] if contents.problem else []
+        self.remarks: list[str] = list(contents.remarks)
+        self.problems: list[str] = list(contents.problems)
         self.connections = tuple(
             _connection(channel, contents.schemas.get(channel.schema_id), contents.counts.get(key, 0))
             for key, channel in sorted(contents.channels.items())
@@ -73,12 +75,10 @@ class McapFile:
         self, span: McapSpan, wanted: dict[int, Connection], start_ns: int | None, end_ns: int | None
     ) -> list[RawMessages]:
         """Messages of one chunk; none, and an entry in ``problems``, where it is damaged."""
-        self._file.seek(span.offset)
-        raw = self._file.read(span.length + span.index_length)
         try:
-            content = raw if span.is_run else chunk_content(raw[: span.length])
+            content, index = self._content(span)
             data = np.frombuffer(content, np.uint8)
-            entries = from_index(data, raw[span.length :]) or walk(content)
+            entries = from_index(data, index) or walk(content)
         except (DamagedChunkError, struct.error) as error:
             self.problems.append(f"the chunk at byte {span.offset} is damaged and left out: {error}")
             return []
@@ -88,6 +88,20 @@ class McapFile:
             if key in wanted
         ]
         return [chosen for part in parts if len(chosen := within(part, start_ns, end_ns))]
+
+    def _content(self, span: McapSpan) -> tuple[bytes, bytes]:
+        """Uncompressed records of a chunk or run, and the message index behind it."""
+        if span.length + span.index_length > MOST_CHUNK_BYTES:
+            raise DamagedChunkError(
+                f"it is {span.length} bytes long, more than {MOST_CHUNK_BYTES} are not read"
+            )
+        self._file.seek(span.offset)
+        raw = self._file.read(span.length + span.index_length)
+        if span.is_run:
+            return raw, b""
+        if span.is_cut:
+            return whole_records(raw), b""
+        return chunk_content(raw[: span.length]), raw[span.length :]
 
 
 def _connection(channel: Channel, schema: Schema | None, count: int) -> Connection:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
 from typing import Any, cast
 
 from rosbags.interfaces import Nodetype
@@ -96,11 +97,15 @@ HEADER, OLDEST_HEADER = "std_msgs/msg/Header", "roslib/msg/Header"
 DEFAULT_STORES = {"cdr": Stores.ROS2_HUMBLE, "ros1": Stores.ROS1_NOETIC}
 
 
+def is_read(connection: Connection) -> bool:
+    """Whether messages of this type are read, and in this encoding."""
+    return connection.msgtype in MESSAGE_TYPES and connection.encoding in DEFAULT_STORES
+
+
 class DecoderCache:
     """What is known about the types of one recording's connections, found out when first asked for."""
 
     def __init__(self) -> None:
-        self._stores: dict[tuple[str, str, str], Typestore] = {}
         self._standard: dict[tuple[str, str, str], Fields | None] = {}
 
     def standard_fields(self, connection: Connection) -> Fields | None:
@@ -123,10 +128,7 @@ class DecoderCache:
         raise ValueError(f"messages in {connection.encoding!r} encoding cannot be read")
 
     def _store(self, connection: Connection) -> Typestore:
-        key = _key(connection)
-        if key not in self._stores:
-            self._stores[key] = _make_store(connection)
-        return self._stores[key]
+        return _make_store(*_key(connection), connection.definition_format)
 
     def _matching_fields(self, connection: Connection) -> Fields | None:
         message_type = MESSAGE_TYPES.get(connection.msgtype)
@@ -145,27 +147,28 @@ def _key(connection: Connection) -> tuple[str, str, str]:
     return connection.msgtype, connection.encoding, connection.definition
 
 
-def _make_store(connection: Connection) -> Typestore:
+@lru_cache(maxsize=64)
+def _make_store(msgtype: str, encoding: str, definition: str, definition_format: str) -> Typestore:
     """Types as the connection's own definition has them; the distribution's where it has none or an unreadable one."""
     try:
-        if connection.definition_format == "idl" and connection.definition:
-            types = _types_from_idl(connection.definition)
-        elif connection.definition:
-            types = get_types_from_msg(connection.definition, connection.msgtype)
+        if definition_format == "idl" and definition:
+            types = _types_from_idl(definition)
+        elif definition:
+            types = get_types_from_msg(definition, msgtype)
         else:
             types = {}
         if OLDEST_HEADER in types:  # its place before ROS 1.2; it is referred to as "Header" all the same
             types.setdefault(HEADER, types[OLDEST_HEADER])
-        if flattened(types, connection.msgtype):
+        if flattened(types, msgtype):
             store = get_typestore(Stores.EMPTY)
             store.register(types)
             return store
     except Exception:  # noqa: BLE001 - the parser meets foreign text, and says in many ways that it cannot
         pass
-    store = get_typestore(DEFAULT_STORES.get(connection.encoding, Stores.ROS2_HUMBLE))
-    message_type = MESSAGE_TYPES.get(connection.msgtype)
-    if message_type and message_type.kind is Kind.TRANSFORMS and connection.msgtype not in store.fielddefs:
-        store.register(get_types_from_msg(TRANSFORMS_DEFINITION, connection.msgtype))
+    store = get_typestore(DEFAULT_STORES.get(encoding, Stores.ROS2_HUMBLE))
+    message_type = MESSAGE_TYPES.get(msgtype)
+    if message_type and message_type.kind is Kind.TRANSFORMS and msgtype not in store.fielddefs:
+        store.register(get_types_from_msg(TRANSFORMS_DEFINITION, msgtype))
     return store
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 
 from timemap_cli.logs.chunked import split_at
+from timemap_cli.logs.message_types import is_read
 from timemap_cli.logs.raw import RawMessages, Storage
 
 NEVER_NS = 2**63 - 1
@@ -25,7 +26,7 @@ def stretches_of_all(
 
 
 def _connections(storage: Storage, topics: Collection[str]) -> set[int]:
-    return {connection.id for connection in storage.connections if connection.topic in topics}
+    return {one.id for one in storage.connections if one.topic in topics and is_read(one)}
 
 
 def _overlapping(chosen: Sequence[tuple[Storage, set[int]]]) -> list[list[tuple[Storage, set[int]]]]:

@@ -2,42 +2,22 @@
 
 from __future__ import annotations
 
-import struct
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 
-import zstandard
-from mcap.exceptions import McapError
-from rosbags.rosbag2 import ReaderError
-from rosbags.typesys import TypesysError
-
-from timemap_cli.errors import TimemapError, UsageError
-from timemap_cli.logs.bag_records import DamagedBagError
-from timemap_cli.logs.batches import Batch
+from timemap_cli.errors import UsageError
+from timemap_cli.logs.batches import BadBatch, Batch
+from timemap_cli.logs.block_decoding import UNDECODABLE
 from timemap_cli.logs.decode import decode
 from timemap_cli.logs.files import open_files
-from timemap_cli.logs.mcap_chunks import DamagedChunkError
-from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache
+from timemap_cli.logs.foreign_errors import translated
+from timemap_cli.logs.message_types import MESSAGE_TYPES, DecoderCache, is_read
 from timemap_cli.logs.parts import stretches_of_all
-
-FOREIGN_ERRORS = (
-    AssertionError,
-    DamagedBagError,
-    DamagedChunkError,
-    EOFError,
-    KeyError,
-    McapError,
-    OSError,
-    ReaderError,
-    TypesysError,
-    ValueError,
-    struct.error,
-    zstandard.ZstdError,
-)
+from timemap_cli.logs.raw import Connection
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +34,8 @@ class Recording:
 
     ``start_ns``, ``end_ns``: log times of the first and the last message, both 0 where there is none.
     ``topics`` are in order of name. ``problems`` are sentences about data that is damaged or missing;
-    reading may add to them. ``remarks`` are about what is odd and costs no data.
+    reading may add to them. ``remarks`` are about what is odd and costs no data. ``unusable`` holds the topics of which
+    some messages read so far gave nothing, and why.
     """
 
     def __init__(self, path: Path) -> None:
@@ -65,28 +46,33 @@ class Recording:
         self.path = path
         self._files = ExitStack()
         try:
-            with _translated(path):
+            with translated(path):
                 self._opened = open_files(path, self._files)
         except BaseException:
             self._files.close()
             raise
         self._storages = self._opened.storages
+        self._damage: list[str] = []  # messages that cannot be decoded
+        self.unusable: set[tuple[str, str]] = set()
         self._decoders = DecoderCache()
         self.format = self._storages[0].format
         filled = [storage for storage in self._storages if any(one.count for one in storage.connections)]
         self.start_ns = min((storage.start_ns for storage in filled), default=0)
         self.end_ns = max((storage.end_ns for storage in filled), default=0)
+        connections = [connection for storage in self._storages for connection in storage.connections]
+        readable = {connection.topic for connection in connections if is_read(connection)}
         counts: Counter[tuple[str, str]] = Counter()
-        for storage in self._storages:
-            for connection in storage.connections:
-                counts[connection.topic, connection.msgtype] += connection.count
+        for one in connections:
+            # Beside messages that are read, others on the same topic do not count.
+            if is_read(one) or one.topic not in readable:
+                counts[one.topic, _kind(one)] += one.count
         self.topics = tuple(Topic(name, msgtype, counts[name, msgtype]) for name, msgtype in sorted(counts))
 
     @property
     def problems(self) -> tuple[str, ...]:
         """What is damaged or missing, as far as it has been noticed."""
         of_files = [problem for storage in self._storages for problem in storage.problems]
-        return tuple(dict.fromkeys([*self._opened.problems, *of_files]))
+        return tuple(dict.fromkeys([*self._opened.problems, *of_files, *self._damage]))
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -105,9 +91,21 @@ class Recording:
             if topic.name in topics and topic.msgtype not in MESSAGE_TYPES:
                 content = topic.msgtype or "untyped messages"
                 raise UsageError(f"{topic.name} in {self.path} holds {content}, which cannot be used")
-        with _translated(self.path):
+        bad: Counter[str] = Counter()
+        with translated(self.path):
             for parts in stretches_of_all(self._storages, topics, start_ns, end_ns):
-                yield decode(parts, self._decoders)
+                batches = decode(parts, self._decoders)
+                for batch in batches:
+                    if isinstance(batch, BadBatch):
+                        self.unusable.add((batch.topic, batch.reason))
+                        bad[batch.topic] += batch.count if batch.reason == UNDECODABLE else 0
+                yield batches
+        if start_ns is None and end_ns is None:
+            self._damage += [
+                f"{count} messages of {topic} are damaged and left out"
+                for topic, count in bad.items()
+                if count
+            ]
 
     def close(self) -> None:
         """Release the files."""
@@ -120,6 +118,13 @@ class Recording:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _kind(connection: Connection) -> str:
+    """The type of the messages, and their encoding where it is none that is read."""
+    if connection.msgtype in MESSAGE_TYPES and not is_read(connection):
+        return f"{connection.msgtype} in {connection.encoding or 'no encoding'}"
+    return connection.msgtype
 
 
 def open_recordings(paths: Sequence[Path]) -> list[Recording]:
@@ -138,24 +143,3 @@ def open_recordings(paths: Sequence[Path]) -> list[Recording]:
             recording.close()
         raise
     return sorted(recordings, key=lambda recording: recording.start_ns)
-
-
-@contextmanager
-def _translated(path: Path) -> Iterator[None]:
-    """Errors of the libraries that read files become a TimemapError that names the file and the reason."""
-    try:
-        yield
-    except TimemapError:
-        raise
-    except FOREIGN_ERRORS as error:
-        raise TimemapError(f"{path} cannot be read: {_reason(error, path)}") from error
-
-
-def _reason(error: Exception, path: Path) -> str:
-    """What went wrong, in words for who does not know the library; the file, where it is one of a folder."""
-    if isinstance(error, OSError) and error.strerror:
-        within = error.filename if error.filename and Path(error.filename) != path else None
-        return f"{within}: {error.strerror.lower()}" if within else error.strerror.lower()
-    if isinstance(error, AssertionError | EOFError | KeyError | struct.error) or not str(error):
-        return "its parts do not fit together; it is cut off or damaged"
-    return str(error)

@@ -73,18 +73,7 @@ def take_sample(recordings: Sequence[Recording], scan_topics: Collection[str]) -
 
 def thinned(batch: ScanBatch, every: int) -> ScanBatch:
     """Every so many-th scan of a batch, the first among them."""
-    if every <= 1:
-        return batch
-    return ScanBatch(
-        batch.topic,
-        batch.frame_id,
-        batch.layout,
-        batch.stamps_ns[::every],
-        batch.log_ns[::every],
-        batch.ranges[::every],
-        batch.range_max[::every],
-        batch.time_increment[::every],
-    )
+    return batch if every <= 1 else batch.chosen(slice(None, None, every))
 
 
 def _read_windows(

@@ -263,6 +263,9 @@ def _no_poses(
     topic, frame = next(
         ((t, f) for t, f in lasers if not seen.frames.connects(wanted.map_frame, f)), lasers[0]
     )
+    if not frame:
+        hint = "set frame_id in the scanner's driver: it must be the frame that the transforms place on the robot"
+        return UsageError(f"no pose for {topic}: its scans name no frame", hint=hint)
     if connected:
         topic, frame = next(
             ((t, f) for t, f in lasers if seen.frames.connects(connected[0].map_frame, f)), (topic, frame)
@@ -320,6 +323,9 @@ def _what_else(topics: Mapping[str, str]) -> str:
     more = f" and {len(names) - 6} more" if len(names) > 6 else ""
     if not names:
         return "there are no messages"
+    for name in names:
+        if topics[name].startswith(f"{SCAN_TYPE} in "):
+            return f"{name} holds {topics[name]}, which is not read"
     return f"no topic of type {SCAN_TYPE} among {', '.join(names[:6])}{more}"
 
 

@@ -8,13 +8,23 @@ from typing import Any
 import numpy as np
 
 from timemap_cli.logs.batches import BadBatch, Batch, BeamLayout, PoseBatch, ScanBatch, TransformBatch
-from timemap_cli.logs.block_decoding import MALFORMED, SECOND_NS, frame_name, has_beams, is_static
+from timemap_cli.logs.block_decoding import (
+    MALFORMED,
+    MISMATCHED,
+    NO_STAMP_NS,
+    SECOND_NS,
+    UNDECODABLE,
+    fits_angles,
+    frame_name,
+    has_beams,
+    is_static,
+)
 from timemap_cli.logs.message_types import MESSAGE_TYPES, Kind
 from timemap_cli.logs.raw import RawMessages
 
 
 def decode_singly(messages: RawMessages, deserialise: Callable[[bytes], Any]) -> list[Batch]:
-    """Batches of one message each; what cannot be deserialised or read is counted as malformed."""
+    """Batches of one message each; what cannot be deserialised or read is counted as undecodable."""
     read = _READERS[MESSAGE_TYPES[messages.connection.msgtype].kind]
     batches: list[Batch] = []
     n_bad = 0
@@ -25,7 +35,7 @@ def decode_singly(messages: RawMessages, deserialise: Callable[[bytes], Any]) ->
         except Exception:  # noqa: BLE001 - damaged bytes make generated decoders fail in any way there is
             n_bad += 1
     if n_bad:
-        batches.append(BadBatch(messages.connection.topic, MALFORMED, n_bad))
+        batches.append(BadBatch(messages.connection.topic, UNDECODABLE, n_bad))
     return batches
 
 
@@ -35,6 +45,9 @@ def _scans(message: Any, topic: str, log_ns: int) -> Iterator[Batch]:
     layout = BeamLayout(float(numbers[0]), float(numbers[1]), ranges.shape[1], float(numbers[2]))
     if not has_beams(layout):
         yield BadBatch(topic, MALFORMED, 1)
+        return
+    if not fits_angles(layout, np.array([message.angle_max], np.float32)).all():
+        yield BadBatch(topic, MISMATCHED, 1)
         return
     yield ScanBatch(
         topic=topic,
@@ -85,7 +98,10 @@ _READERS: dict[Kind, Callable[[Any, str, int], Iterator[Batch]]] = {
 
 
 def _stamp(header: Any) -> np.ndarray[Any, np.dtype[np.int64]]:
-    return np.array([header.stamp.sec * SECOND_NS + header.stamp.nanosec], np.int64)
+    is_stamp = header.stamp.nanosec < SECOND_NS
+    return np.array(
+        [header.stamp.sec * SECOND_NS + header.stamp.nanosec if is_stamp else NO_STAMP_NS], np.int64
+    )
 
 
 def _row(vector: Any, names: str) -> np.ndarray[Any, np.dtype[np.float64]]:

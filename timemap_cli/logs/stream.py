@@ -69,7 +69,8 @@ class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
     Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
-    10 s behind the newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``, and those of ``PoseLimits``.
+    10 s behind the newest), ``ahead`` (of all others of its recording), ``duplicate`` (topic and stamp of
+    another scan), ``no_pose``, and those of ``PoseLimits``.
     """
 
     read: int = 0
@@ -91,6 +92,7 @@ def sweeps(
     start_ns: int | None = None,
     end_ns: int | None = None,
     drives: Sequence[Sequence[int]] | None = None,
+    latest_ns: Mapping[int, int] | None = None,
     limits: PoseLimits = NO_LIMITS,
     earlier: State | None = None,
 ) -> Iterator[Coming]:
@@ -98,7 +100,7 @@ def sweeps(
 
     ``recordings`` are in the order of their starts; ``beams`` is by (index, topic).
     Recordings of one of the ``drives`` are merged, with common transforms: where not given, those that
-    overlap or follow within 10 s. Within a
+    overlap or follow within 10 s. Scans stamped later than ``latest_ns`` of their recording are dropped. Within a
     drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
     (open) cut by the scans' stamps; static transforms count wherever they stand. Scans whose pose is worse than
     the ``limits`` are left out. Which scans share a block has no bearing on any value.
@@ -109,7 +111,7 @@ def sweeps(
     span_ns = (BEGINNING_NS if start_ns is None else start_ns, NEVER_NS if end_ns is None else end_ns)
     groups = drives or joined(recordings, WINDOW_NS)
     static = _static_transforms(recordings, counts, earlier)
-    begin = partial(_Drive, recordings, selection, beams, counts, span_ns, limits)
+    begin = partial(_Drive, recordings, selection, beams, counts, span_ns, latest_ns or {}, limits)
     goes_on = earlier is not None and recordings[groups[0][0]].start_ns <= earlier["log_end_ns"] + WINDOW_NS
     if earlier is not None:
         if not goes_on:
@@ -138,6 +140,7 @@ class _Drive:
         beams: Mapping[tuple[int, str], Beams],
         counts: ScanCounts,
         span_ns: tuple[int, int],
+        latest_ns: Mapping[int, int],
         limits: PoseLimits,
         poses: PoseSource,
         earlier: State | None = None,
@@ -148,6 +151,7 @@ class _Drive:
         self._beams = dict(beams)
         self._counts = counts
         self._end_ns = span_ns[1]
+        self._latest_ns = latest_ns
         self._poses = poses
         self._limits = limits
         self._window = ScanWindow(span_ns)
@@ -221,6 +225,11 @@ class _Drive:
                 self._counts.transforms_dropped += batch.count
 
     def _take_scans(self, index: int, batch: ScanBatch) -> None:
+        ahead = batch.stamps_ns > self._latest_ns.get(index, NEVER_NS)
+        if ahead.any():
+            self._counts.read += int(np.count_nonzero(ahead))
+            self._counts.drop("ahead", int(np.count_nonzero(ahead)))
+            batch = batch.chosen(~ahead)
         if not len(batch.stamps_ns):
             return
         if not _has_bearings(batch.layout):

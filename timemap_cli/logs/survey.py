@@ -31,6 +31,8 @@ from timemap_cli.logs.selection import (
 )
 from timemap_cli.model.sweeps import Sweeps
 
+DAY_NS = 86_400_000_000_000
+
 
 @dataclass(frozen=True, slots=True)
 class Survey:
@@ -46,6 +48,7 @@ class Survey:
         tuple[int, int], ...
     ]  # begin and end of each recording that has scans, in time of their stamps
     drives: tuple[Drive, ...]  # recordings that are merged and share their transforms
+    latest_ns: Mapping[int, int]  # index of the recording -> stamp beyond which no scan of it can be
     pose_limits: PoseLimits  # how good a scan's pose must be
 
     @property
@@ -84,11 +87,19 @@ def survey(recordings: Sequence[Recording], settings: Settings, known: Known = N
     topics = topics_of(recordings)
     try:
         candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+        sample = take_sample(recordings, candidates)
+        if not sample.scans:
+            raise _no_scans(recordings, candidates)
+        sample = replace(sample, static=replace(sample.static, earlier=known.static_transforms))
+        return survey_sample(recordings, sample, candidates, settings, known)
     except UsageError as error:
         raise _with_damage(error, recordings) from error
-    sample = take_sample(recordings, candidates)
-    sample = replace(sample, static=replace(sample.static, earlier=known.static_transforms))
-    return survey_sample(recordings, sample, candidates, settings, known)
+
+
+def _no_scans(recordings: Sequence[Recording], candidates: Sequence[str]) -> UsageError:
+    reasons = sorted({why for one in recordings for topic, why in one.unusable if topic in candidates})
+    are = f": they are {' or '.join(reasons)}" if reasons else ""
+    return UsageError(f"no scan of {', '.join(candidates)} could be read{are}")
 
 
 def survey_sample(
@@ -124,8 +135,11 @@ def survey_sample(
         *_short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
+    latest_ns = _latest_ns(len(recordings), sample, selection)
     limits = pose_limits(settings.gate)
-    return Survey(selection, beams, counts, missing, so_far, problems, spans_ns, sample.drives, limits)
+    return Survey(
+        selection, beams, counts, missing, so_far, problems, spans_ns, sample.drives, latest_ns, limits
+    )
 
 
 def pose_limits(gate: GateSettings) -> PoseLimits:
@@ -212,6 +226,21 @@ def _spans_ns(
             end_ns = recording.end_ns + int(stamps_ns[last] - log_ns[last])
             found.append((begin_ns, max(begin_ns, end_ns)))
     return tuple(found)
+
+
+def _latest_ns(count: int, sample: Sample, selection: Selection) -> dict[int, int]:
+    """Stamps that no scan of a recording can have, going by nine tenths of the sampled ones.
+
+    The others may go half as far again, and a day farther: a single stamp years ahead would make all that follow late.
+    """
+    found = {}
+    for index in range(count):
+        batches = [b for topic in selection.scan_topics for b in sample.scans.get((index, topic), ())]
+        if batches:
+            stamps_ns = np.sort(np.concatenate([batch.stamps_ns for batch in batches]))
+            low, high = (int(stamps_ns[(len(stamps_ns) - 1) * tenths // 10]) for tenths in (1, 9))
+            found[index] = high + (high - low) // 2 + DAY_NS
+    return found
 
 
 def _pose_topics(

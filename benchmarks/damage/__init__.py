@@ -1,0 +1,1 @@
+"""What becomes of recordings that are damaged at random."""
