@@ -4,7 +4,6 @@ import dataclasses
 import hashlib
 import json
 import math
-import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -15,11 +14,11 @@ from typing import Any
 from timemap_cli.errors import UsageError
 from timemap_cli.setting_kinds import Frame, Kind, Number, OneOf, Seconds, SpanOf, Text, Topics
 from timemap_cli.spans import Span
+from timemap_cli.yaml_files import parsed_yaml, read_yaml
 
 HalfLife = Span
 Period = Span
 
-_SHOWN = "timemap config shows how settings are written"
 PROFILES = ("default", "paper")
 
 
@@ -142,7 +141,7 @@ def load(
 
 def loads(text: str, place: str) -> Settings:
     """Settings from the text of a YAML file, as `dump` writes it; `place` is what errors call it."""
-    return _layered([(place, _parsed(text, place))], None)
+    return _layered([(place, parsed_yaml(text, place))], None)
 
 
 def _layered(layers: list[tuple[str, Mapping[str, Any]]], base: Settings | None) -> Settings:
@@ -170,44 +169,6 @@ def settings_hash(settings: Settings) -> str:
     """SHA-256, in hexadecimal, over the values of all settings; comments and layout do not count."""
     values = json.dumps(_plain(settings), sort_keys=True, ensure_ascii=True, separators=(",", ":"))
     return hashlib.sha256(values.encode()).hexdigest()
-
-
-def read_yaml(path: Path, what: str = "settings", hint: str = _SHOWN) -> Mapping[str, Any]:
-    """A file of settings, or of something else, as nested mappings; UsageError where it is missing or not YAML."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        raise UsageError(
-            f"no {what} file {path}",
-            hint=f"timemap config > {shlex.quote(str(path))}" if what == "settings" else hint,
-        ) from error
-    except (OSError, UnicodeDecodeError) as error:
-        reason = (error.strerror or str(error)).lower() if isinstance(error, OSError) else "it is not a text"
-        raise UsageError(f"cannot read the {what} file {path}: {reason}", hint=hint) from error
-    return _parsed(text, str(path), what, hint)
-
-
-def _parsed(text: str, place: str, what: str = "settings", hint: str = _SHOWN) -> Mapping[str, Any]:
-    # YAML is slow to import and most runs have no settings file.
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    try:
-        values = YAML(typ="safe", pure=True).load(text)
-    except (YAMLError, ValueError) as error:
-        raise UsageError(f"{place} is not YAML: {_yaml_trouble(error)}", hint=hint) from error
-    if values is None:
-        return {}
-    if not isinstance(values, Mapping):
-        raise UsageError(f"{place} holds no {what}", hint=hint)
-    return values
-
-
-def _yaml_trouble(error: Exception) -> str:
-    """What is wrong and in which line, without the library's own advice."""
-    problem, mark = getattr(error, "problem", None), getattr(error, "problem_mark", None)
-    what = " ".join(str(problem or error).replace('in "<unicode string>", ', "at ").split())
-    return f"line {mark.line + 1}: {what}" if mark is not None else what
 
 
 def _profile(layers: list[tuple[str, Mapping[str, Any]]]) -> str:

@@ -7,16 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.changes.tracker import Tracker
+from timemap_cli.logs.coming import Coming, EndOfRecording, Resumed, ScanCounts, Waiting
+from timemap_cli.logs.drive_stream import LEAST_SCANS
 from timemap_cli.logs.recordings import Recording
-from timemap_cli.logs.stream import (
-    LEAST_SCANS,
-    Coming,
-    EndOfRecording,
-    Resumed,
-    ScanCounts,
-    Waiting,
-    sweeps,
-)
+from timemap_cli.logs.stream import sweeps
 from timemap_cli.logs.survey import Survey
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.learner import Asked, Keep, Kept, Learnt, Mark, Round

@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 from timemap_cli.checking import Check, Updated, checked, update
 from timemap_cli.checks import tolerances
 from timemap_cli.checks.verdict import CheckedCase
-from timemap_cli.config import read_yaml
 from timemap_cli.errors import UsageError
+from timemap_cli.yaml_files import read_yaml
 
 T = TypeVar("T")
 

@@ -11,8 +11,9 @@ import numpy.typing as npt
 from benchmarks.paper.definitions import Definition
 from timemap_cli import assembly
 from timemap_cli.config import Settings
+from timemap_cli.logs.coming import ScanCounts
 from timemap_cli.logs.recordings import open_recordings
-from timemap_cli.logs.stream import ScanCounts, sweeps
+from timemap_cli.logs.stream import sweeps
 from timemap_cli.logs.survey import survey
 from timemap_cli.model.levels import Level
 from timemap_cli.model.memory import Memory

@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.logs.making import FakeRecording, ns, poses, scans, tf
-from timemap_cli.logs import stream
+from timemap_cli.logs import drive_stream
 from timemap_cli.logs.beams import Beams
+from timemap_cli.logs.coming import EndOfRecording, Resumed, ScanCounts, Waiting
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import EndOfRecording, Resumed, ScanCounts, Waiting, sweeps
+from timemap_cli.logs.stream import sweeps
 from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.results.state_messages import Part, StatePart, pack_state, unpack_state
 
@@ -165,7 +166,7 @@ def test_a_recording_cut_by_its_span_goes_on_with_the_rest_of_itself():
 
 
 def test_the_state_is_small_however_long_the_recording_is(monkeypatch):
-    monkeypatch.setattr(stream, "LEAST_SCANS", 8)
+    monkeypatch.setattr(drive_stream, "LEAST_SCANS", 8)
     seconds = np.arange(0, 4000, 0.5)
     lists = [[driving(part), scans(part, topic="/front")] for part in np.split(seconds, 100)]
     state = kept(streamed(FakeRecording([[MOUNT], *lists])))

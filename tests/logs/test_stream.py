@@ -5,11 +5,12 @@ import pytest
 
 from tests.logs.making import FakeRecording, ns, scans, tf, yaw
 from tests.logs.making import poses as pose_batch
-from timemap_cli.logs import stream
+from timemap_cli.logs import drive_stream
 from timemap_cli.logs.batches import BadBatch
 from timemap_cli.logs.beams import Beams
+from timemap_cli.logs.coming import EndOfRecording, ScanCounts, Waiting
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, Waiting, sweeps
+from timemap_cli.logs.stream import sweeps
 
 BEAMS = Beams(0.1, 30.0, False, 30.0, True, ())
 MOUNT = tf("base", "laser", [0], [[0.5, 0, 0]], static=True)
@@ -274,8 +275,8 @@ def everything(out):
 @pytest.mark.parametrize(("lists", "least", "most"), [(1, 128, 512), (7, 1, 3), (60, 20, 50), (300, 1, 1)])
 def test_neither_the_reading_nor_the_size_of_blocks_shows_in_the_outcome(monkeypatch, lists, least, most):
     expected, _ = replayed(long_log(2))
-    monkeypatch.setattr(stream, "LEAST_SCANS", least)
-    monkeypatch.setattr(stream, "MOST_SCANS", most)
+    monkeypatch.setattr(drive_stream, "LEAST_SCANS", least)
+    monkeypatch.setattr(drive_stream, "MOST_SCANS", most)
     out, counts = replayed(long_log(lists))
     assert max(len(block) for block in blocks(out)) <= most
     assert everything(out) == everything(expected)
@@ -286,7 +287,7 @@ def test_neither_the_reading_nor_the_size_of_blocks_shows_in_the_outcome(monkeyp
 @pytest.mark.parametrize(("lists", "least"), [(3, 128), (50, 1), (300, 7)])
 def test_nor_does_it_move_the_ends_of_recordings(monkeypatch, lists, least):
     short = FakeRecording([[scans([20.05, 20.15])], [tf("map", "other", [25], [[0, 0, 0]])]])
-    monkeypatch.setattr(stream, "LEAST_SCANS", least)
+    monkeypatch.setattr(drive_stream, "LEAST_SCANS", least)
     out, _ = replayed(long_log(lists), short)
     before = out[: out.index(EndOfRecording(1))]
     assert 20 < seconds(before)[-1] < 20.2
@@ -295,13 +296,13 @@ def test_nor_does_it_move_the_ends_of_recordings(monkeypatch, lists, least):
 
 def test_memory_does_not_grow_with_the_log(monkeypatch):
     held = []
-    let_out = stream._Drive._let_out
+    let_out = drive_stream.DriveStream._let_out
 
     def watched(self, until_ns):
         yield from let_out(self, until_ns)
         held.append((len(self._poses._buffer), self._window.nbytes, len(self._window._waiting)))
 
-    monkeypatch.setattr(stream._Drive, "_let_out", watched)
+    monkeypatch.setattr(drive_stream.DriveStream, "_let_out", watched)
     replayed(long_log(100))
     samples, nbytes, waiting = np.max(held, axis=0)
     # 2 transforms and 5 scans a second: the window, a block and two lists
@@ -312,13 +313,13 @@ def test_memory_does_not_grow_with_the_log(monkeypatch):
 
 def test_transforms_do_not_pile_up_while_the_scanner_is_silent(monkeypatch):
     held = []
-    let_out = stream._Drive._let_out
+    let_out = drive_stream.DriveStream._let_out
 
     def watched(self, until_ns):
         yield from let_out(self, until_ns)
         held.append(len(self._poses._buffer))
 
-    monkeypatch.setattr(stream._Drive, "_let_out", watched)
+    monkeypatch.setattr(drive_stream.DriveStream, "_let_out", watched)
     lists = [
         [MOUNT, scans([1, 2])],
         *([driving(at, at + 9.5)] for at in range(0, 2000, 10)),
@@ -331,13 +332,13 @@ def test_transforms_do_not_pile_up_while_the_scanner_is_silent(monkeypatch):
 
 def test_a_layout_that_differs_from_scan_to_scan_costs_no_memory(monkeypatch):
     held = []
-    let_out = stream._Drive._let_out
+    let_out = drive_stream.DriveStream._let_out
 
     def watched(self, until_ns):
         yield from let_out(self, until_ns)
         held.append(len(self._window._kinds))
 
-    monkeypatch.setattr(stream._Drive, "_let_out", watched)
+    monkeypatch.setattr(drive_stream.DriveStream, "_let_out", watched)
     lists = [[MOUNT], *([driving(at, at + 1), scans([at], count=2 + at % 500)] for at in range(1000))]
     out, counts = replayed(FakeRecording(lists))
     assert len(seconds(out)) == counts.read == 1000

@@ -5,11 +5,12 @@ import pytest
 
 from tests.logs.making import FakeRecording, scans, tf
 from tests.logs.test_pose_quality import stated
-from timemap_cli.logs import stream
+from timemap_cli.logs import drive_stream
 from timemap_cli.logs.beams import Beams
+from timemap_cli.logs.coming import ScanCounts
 from timemap_cli.logs.pose_quality import PoseLimits
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import ScanCounts, sweeps
+from timemap_cli.logs.stream import sweeps
 from timemap_cli.model.sweeps import Sweeps
 
 BEAMS = Beams(0.1, 30.0, False, 30.0, True, ())
@@ -79,7 +80,7 @@ def test_poses_of_a_topic_are_judged_alike():
 @pytest.mark.parametrize("least", [1, 17])
 def test_what_is_set_aside_does_not_depend_on_how_the_recording_is_read(monkeypatch, size, least):
     whole, counts = replayed([recording(0, 60)])
-    monkeypatch.setattr(stream, "LEAST_SCANS", least)
+    monkeypatch.setattr(drive_stream, "LEAST_SCANS", least)
     in_parts, counts_in_parts = replayed([recording(at, min(60, at + size)) for at in range(0, 60, size)])
     assert in_parts == whole == expected(60)
     assert counts_in_parts == counts

@@ -9,9 +9,10 @@ import pytest
 from tests.conftest import shared_data
 from timemap_cli.logs import rigid
 from timemap_cli.logs.beams import Beams
+from timemap_cli.logs.coming import EndOfRecording, ScanCounts, Waiting
 from timemap_cli.logs.recordings import open_recordings
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, Waiting, sweeps
+from timemap_cli.logs.stream import sweeps
 
 BEAMS = Beams(0.02, 79.0, False, 79.0, True, ())
 

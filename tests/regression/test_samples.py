@@ -6,9 +6,9 @@ import pytest
 
 from tests.cli.program import timemap
 from timemap_cli.checking import update
-from timemap_cli.config import read_yaml
 from timemap_cli.results.container import is_result
 from timemap_cli.suite import read_suite
+from timemap_cli.yaml_files import read_yaml
 
 HERE = Path(__file__).parent
 SUITE = HERE / "suite.yaml"

@@ -15,6 +15,7 @@ from timemap_cli.logs.missing_returns import MissingReturns
 from timemap_cli.logs.pose_quality import PoseLimits
 from timemap_cli.logs.poses import TF, PoseSource, transform_topics
 from timemap_cli.logs.recordings import Recording, open_recordings
+from timemap_cli.logs.sampled_poses import SampledPoses
 from timemap_cli.logs.sampling import Sample, take_sample
 from timemap_cli.logs.scan_statistics import ScanStatistics, ScanTopic
 from timemap_cli.logs.selection import (
@@ -27,7 +28,6 @@ from timemap_cli.logs.selection import (
     scan_candidates,
 )
 from timemap_cli.logs.survey import (
-    SampledPoses,
     Survey,
     names_of,
     pose_limits,
