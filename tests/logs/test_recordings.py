@@ -12,6 +12,7 @@ import pytest
 import zstandard
 from mcap.reader import make_reader
 
+from tests.cli.result_files import all_levels, write
 from tests.logs import recorded
 from tests.logs.recorded import ROS1, ROS2, START_NS, TOPICS, CompressionType, IndexType, StoragePlugin
 from timemap_cli.errors import ExitCode, TimemapError, UsageError
@@ -300,6 +301,14 @@ def test_result_of_ours_is_refused(tmp_path):
         with pytest.raises(UsageError, match="is a result of timemap, not a recording") as caught:
             Recording(path)
         assert str(path) in str(caught.value.hint)
+
+
+def test_result_of_ours_that_is_cut_off_is_refused(tmp_path):
+    """Without its end, and so without the record that says what it is, its topics tell."""
+    path = write(tmp_path / "r.timemap.mcap", [(seconds, all_levels(False)) for seconds in range(300)])
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.raises(UsageError, match="is a damaged result of timemap, not a recording"):
+        Recording(path)
 
 
 @pytest.mark.parametrize("name", ["mcap", "mcap_without_chunks", "bag", "bag_lz4"])

@@ -106,7 +106,18 @@ def _open_file(path: Path, stack: ExitStack) -> Storage:
             f"{path} is a result of timemap, not a recording",
             hint=f"timemap diff {path} --level long mid",
         )
+    if storage.problems and _holds_only_ours(storage):
+        raise ResultGivenError(
+            f"{path} is a damaged result of timemap, not a recording",
+            hint="make it again with `timemap replay`, or copy it again",
+        )
     return storage
+
+
+def _holds_only_ours(storage: Storage) -> bool:
+    """Whether all topics are those of a result of ours, the record at whose end is lost."""
+    topics = {connection.topic for connection in storage.connections} - {"/tf_static"}
+    return bool(topics) and all(topic.startswith("/timemap/") for topic in topics)
 
 
 def _reader(head: bytes) -> Callable[[Path], Storage] | None:
