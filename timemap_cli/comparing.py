@@ -40,7 +40,8 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
         if levels[0] == levels[1]:
             raise UsageError(f"level {levels[0]} cannot differ from itself", hint=_level_pair(result, reader))
         slower, faster = sorted(levels, key=reader.levels.index, reverse=True)
-        until_ns = _time_within(reader, result, "end" if at is None else at)
+        asked = f"--level {' '.join(levels)} --at {at}"
+        until_ns = _time_within(reader, result, "end" if at is None else at, asked)
         before, after = reader.estimates(slower, until_ns), reader.estimates(faster, until_ns)
         difference = compare(reader.nodes, before, after, radius=reader.radius)
         old_side, new_side = (ComparedSide(str(result), level, until_ns) for level in (slower, faster))
@@ -55,7 +56,8 @@ def compare_times(result: Path, level: str, times: tuple[str, str]) -> Compariso
     """The earlier of two times of a level against the later one: each node's newest estimates until then."""
     with ResultReader(result) as reader:
         require_level(reader, result, level)
-        earlier_ns, later_ns = sorted(_time_within(reader, result, time) for time in times)
+        asked = f"{result} --level {level}"
+        earlier_ns, later_ns = sorted(_time_within(reader, result, time, asked) for time in times)
         before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
         difference = compare(reader.nodes, before, after, radius=reader.radius, only_renewed=True)
         old_side, new_side = (ComparedSide(str(result), level, ns) for ns in (earlier_ns, later_ns))
@@ -97,12 +99,12 @@ def newest_result(folder: Path) -> Path:
     return found[-1]
 
 
-def require_level(reader: ResultReader, result: Path, level: str) -> None:
-    """UsageError for a level that a result does not have."""
+def require_level(reader: ResultReader, result: Path, level: str, hint: str | None = None) -> None:
+    """UsageError for a level that a result does not have; without a hint a diff of two levels is proposed."""
     if level not in reader.levels:
         raise UsageError(
             f"{result} has no level '{level}', only {', '.join(reader.levels)}",
-            hint=_level_pair(result, reader),
+            hint=hint or _level_pair(result, reader),
         )
 
 
@@ -111,14 +113,18 @@ def _level_pair(result: Path, reader: ResultReader) -> str | None:
     return f"timemap diff {result} --level {' '.join(slow_and_next)}" if len(slow_and_next) == 2 else None
 
 
-def _time_within(reader: ResultReader, result: Path, time: str) -> int:
+def _time_within(reader: ResultReader, result: Path, time: str, asked: str) -> int:
+    """A time of a result; UsageError before its first estimates, where `asked` is put to the result it goes on from."""
     stamp_ns = parse_time(time, reader.start_ns, reader.end_ns)
     if stamp_ns < reader.start_ns:
         span = f"from {format_time(reader.start_ns)} to {format_time(reader.end_ns)}"
-        raise UsageError(
-            f"{result} knows nothing at {time}: its estimates go {span}",
-            hint="+10s or end-5s, counted from these",
-        )
+        hint, before = "+10s or end-5s, counted from these", ""
+        if (name := reader.resumed_from) is not None:
+            hint, before = (
+                f"timemap diff {result.with_name(name)} {asked}\n{hint}",
+                f", it goes on from {name}",
+            )
+        raise UsageError(f"{result} knows nothing at {time}: its estimates go {span}{before}", hint=hint)
     return stamp_ns
 
 

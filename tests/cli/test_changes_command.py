@@ -158,15 +158,22 @@ def test_without_a_result_the_newest_of_the_folder_is_taken_and_named(result):
 @pytest.mark.parametrize(
     ("args", "said"),
     [
-        (["--level", "slow"], "no level 'slow'"),
+        (["--level", "slow"], "has no level 'slow', only short, mid, long"),
         (["--since", "soon"], "'soon' is not a time"),
         (["--min-age", "5obs"], "--min-age is a time"),
-        (["--min-age", "old"], "'old' is not a number"),
+        (["--min-age", "old"], "--min-age 'old' is not a number with one of the units s, min, h"),
         (["--kind", "gone"], "'gone' is not one of"),
         (["--region", 1, 2, 3], "requires 4 arguments"),
+        (["--region", 3, 1, 0, 2], "a MIN is above its MAX"),
+        (["--region", 0, 2, 3, 1], "a MIN is above its MAX"),
     ],
 )
 def test_what_cannot_be_meant_is_one_error(result, args, said):
     ran = timemap("changes", result, *args)
     assert (ran.code, ran.out) == (2, "")
     assert said in ran.err.splitlines()[0]
+
+
+def test_a_region_the_wrong_way_round_is_proposed_the_right_way_round(result):
+    ran = timemap("changes", result, "--region", 3, 1.5, 0, 2)
+    assert ran.err.splitlines()[1:] == ["  try: --region 0 1.5 3 2"]

@@ -157,6 +157,19 @@ def test_what_cannot_be_compared_is_one_error_with_something_to_try(result, args
     assert "\n  try: " in ran.err
 
 
+def test_a_time_before_a_resumed_result_is_to_be_asked_of_the_one_it_goes_on_from(tmp_path):
+    earlier = json.dumps({"name": "monday.timemap.mcap", "sha256": "0" * 64})
+    boxes = [(0, all_levels(False)), (9, all_levels(False))]
+    later = write(tmp_path / "r.timemap.mcap", boxes, metadata={"resumed_from": earlier})
+    monday = tmp_path / "monday.timemap.mcap"
+    ran = timemap("diff", later, "--level", "mid", "--between", "5", "end")
+    assert ran.code == 2
+    assert ran.err.splitlines()[0].endswith(", it goes on from monday.timemap.mcap")
+    assert ran.err.splitlines()[1] == f"  try: timemap diff {monday} {later} --level mid"
+    ran = timemap("diff", later, "--level", "long", "mid", "--at", "5")
+    assert ran.err.splitlines()[1] == f"  try: timemap diff {monday} --level long mid --at 5"
+
+
 def test_a_missing_result_is_a_usage_error(tmp_path):
     ran = timemap("diff", tmp_path / "absent.mcap", "--level", "long", "mid")
     assert (ran.code, ran.out) == (2, "")

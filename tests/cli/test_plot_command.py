@@ -95,6 +95,11 @@ def test_what_cannot_be_drawn_is_one_error_with_something_to_try(folder, args, s
     assert sorted(path.name for path in folder.iterdir()) == ["r.timemap.mcap"]
 
 
+def test_what_is_proposed_for_a_wrong_level_can_be_drawn(folder):
+    ran = timemap("plot", "r.timemap.mcap", "--level", "slow")
+    assert ran.err.splitlines()[1:] == ["  try: timemap plot r.timemap.mcap --level long"]
+
+
 def test_an_existing_picture_is_replaced_only_by_force(folder, image):
     assert timemap("plot", "-o", "p.png").code == 0
     assert timemap("plot", "-o", "p.png").err.splitlines()[1] == "error: p.png exists already"

@@ -44,38 +44,43 @@ def changes(
     Without RESULT, the newest *.timemap.mcap in the current folder is taken. TIME is +10s or end-5s, RFC 3339, or
     nanoseconds since 1970.
     """
+    from timemap_cli.comparing import require_level
     from timemap_cli.results.reader import ResultReader
 
     with ResultReader(chosen_result(terminal, result)) as reader:
         document, levels = reader.changes, reader.levels
-        selection = _selection(levels, (reader.start_ns, reader.end_ns), **wanted)
+        for level in wanted["levels"]:
+            require_level(reader, reader.path, level, f"timemap changes {reader.path} --level {levels[-1]}")
+        selection = _selection((reader.start_ns, reader.end_ns), **wanted)
     events = selected(document["events"], selection, sort)
     terminal.result(_told(document, events, levels, form))
     return ExitCode.DONE
 
 
 def _selection(
-    known_levels: tuple[str, ...],
     span_ns: tuple[int, int],
     *,
     since: str | None,
     until: str | None,
     min_size: float,
     min_age: str | None,
-    levels: tuple[str, ...],
+    region: tuple[float, float, float, float] | None,
     **same: Any,
 ) -> EventSelection:
     from timemap_cli.times import parse_time
 
-    for level in levels:
-        if level not in known_levels:
-            raise UsageError(f"there is no level '{level}' in it", hint=f"--level {known_levels[-1]}")
+    if region is not None and (region[0] > region[2] or region[1] > region[3]):
+        x, y = sorted(region[::2]), sorted(region[1::2])
+        raise UsageError(
+            "--region is X_MIN Y_MIN X_MAX Y_MAX, and a MIN is above its MAX",
+            hint=f"--region {x[0]:g} {y[0]:g} {x[1]:g} {y[1]:g}",
+        )
     return EventSelection(
         since_ns=None if since is None else parse_time(since, *span_ns),
         until_ns=None if until is None else parse_time(until, *span_ns),
         min_size_m=min_size,
         min_age_ns=0 if min_age is None else _nanoseconds(min_age),
-        levels=levels,
+        region=region,
         **same,
     )
 
@@ -86,7 +91,8 @@ def _nanoseconds(span: str) -> int:
     try:
         parsed = Span.parse(span)
     except ValueError as error:
-        raise UsageError(str(error), hint="--min-age 10min") from error
+        message = f"--min-age '{span}' is not a number with one of the units s, min, h"
+        raise UsageError(message, hint="--min-age 10min") from error
     if parsed.unit != "s":
         raise UsageError("--min-age is a time", hint="--min-age 10min")
     return round(parsed.value * 1e9)

@@ -86,7 +86,8 @@ def _level(reader: "ResultReader", levels: tuple[str, ...], title: str) -> bytes
 
     if len(levels) < 2:
         level, difference = levels[0] if levels else reader.levels[-1], None
-        require_level(reader, reader.path, level)
+        hint = f"timemap plot {reader.path} --level {reader.levels[-1]}"
+        require_level(reader, reader.path, level, hint)
         title = f"{title}: {level}"
     else:
         comparison = compare_levels(reader.path, (levels[0], levels[1]))

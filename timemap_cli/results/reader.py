@@ -97,6 +97,17 @@ class ResultReader:
             raise self._unreadable() from error
 
     @property
+    def resumed_from(self) -> str | None:
+        """Name of the earlier result that it goes on from."""
+        try:
+            (earlier,) = check_inputs([parsed(self.metadata["resumed_from"])])
+        except KeyError:
+            return None
+        except ValueError as error:
+            raise self._unreadable() from error
+        return earlier["name"]
+
+    @property
     def recording_ends_ns(self) -> tuple[int, ...]:
         """When recordings ended that had taught something: the maps of the levels are written then."""
         return self._file.times_ns(LevelTopic.MAP.of(self.levels[0]))
