@@ -147,6 +147,14 @@ def test_nodes_that_are_nowhere_near_are_named(tmp_path):
     assert "'map'" in raised.value.hint
 
 
+def test_nodes_that_are_nowhere_near_are_named_where_some_scans_have_no_pose(tmp_path):
+    log, nodes = standing_log(tmp_path / "a.mcap"), tmp_path / "nodes.csv"
+    nodes.write_text("900 900\n")
+    lost = standing_log(tmp_path / "b.mcap", start_ns=START_NS + DAY_NS, world="elsewhere")
+    with pytest.raises(UsageError, match=r"no_node 100, no_pose 100 \(--nodes .*: none is near"):
+        replayed(tmp_path, log, lost, nodes=nodes)
+
+
 def test_scans_that_contradict_what_was_long_held_are_counted_as_lost_and_told(tmp_path):
     logs = [
         standing_log(tmp_path / "a.mcap"),

@@ -204,7 +204,7 @@ def _require_some_use(
     if summary.dropped.keys() == {"outside_time"}:
         cut = [f"{name} {time}" for name, time in (("--start", start), ("--end", end)) if time is not None]
         raise UsageError(f"{message} ({' '.join(cut)})", hint=_span_hint(plan))
-    if nodes is not None and "no_node" in summary.dropped.keys() <= {"outside_time", "no_node"}:
+    if nodes is not None and "no_node" in summary.dropped:
         frame = plan.selection.map_frame
         raise UsageError(
             f"{message} (--nodes {nodes}: none is near enough)",

@@ -122,6 +122,11 @@ def test_a_call_that_cannot_be_carried_out_ends_with_2(folder, args, message):
     assert ran.err.startswith(f"error: {message}")
 
 
+def test_without_a_baseline_it_is_said_how_to_make_one_and_what_is_called_much_like_it(folder):
+    ran = timemap("check", "plain.timemap.mcap", "--baseline", "bb.yaml")
+    assert ran.err.splitlines()[1:] == ["  try: --update-baseline makes it", "  try: b.yaml"]
+
+
 SUITE = """
 tolerances: {scans.used: 0.5}
 checks:
@@ -145,6 +150,17 @@ def test_a_suite_runs_all_its_checks_whatever_becomes_of_one(folder):
     ]
     allowed = {one["name"]: one["allowed"] for one in document["checks"][1]["measures"]}
     assert (allowed["scans.used"], allowed["settings.changed"]) == (0.5, 3)
+
+
+def test_a_suite_says_which_check_a_warning_is_about(folder):
+    (folder / "cut.mcap").write_bytes((ROOT / "sample_logs/patrol_monday.mcap").read_bytes()[:400_000])
+    nodes = "{name: cut, logs: [cut.mcap], baseline: c.yaml}"
+    (folder / "s.yaml").write_text(f"checks: [{nodes}, {{result: plain.timemap.mcap, baseline: b.yaml}}]")
+    written = timemap("check", "--suite", "s.yaml", "--update-baseline")
+    checked = timemap("check", "--suite", "s.yaml")
+    assert (written.code, checked.code) == (3, 3)
+    assert written.err.startswith("warning: c.yaml: cut.mcap: it is cut off at byte ")
+    assert checked.err.startswith("warning: cut: cut.mcap: it is cut off at byte ")
 
 
 def test_a_suite_tells_the_same_with_any_number_of_jobs(folder):

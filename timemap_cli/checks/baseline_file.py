@@ -36,6 +36,13 @@ def dump(baseline: Baseline) -> str:
     return HEAD + "\n".join(_lines(baseline)) + "\n"
 
 
+def _missing(path: Path) -> UsageError:
+    """The error where no baseline is: how to make it, and what is called much like it."""
+    making = "--update-baseline makes it"
+    error = no_such_file(path, making)
+    return UsageError(error.message, hint=making if error.hint == making else f"{making}\n{error.hint}")
+
+
 def read(path: Path) -> Baseline:
     """A baseline from its file.
 
@@ -48,7 +55,7 @@ def read(path: Path) -> Baseline:
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
-        raise no_such_file(path, "--update-baseline makes it") from error
+        raise _missing(path) from error
     except UnicodeDecodeError as error:
         raise not_a_baseline(path) from error
     except OSError as error:

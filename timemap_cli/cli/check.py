@@ -149,6 +149,6 @@ def _tell_updated(terminal: Terminal, done: "Sequence[Updated]") -> ExitCode:
 
     for one in done:
         for warning in one.warnings:
-            terminal.warn(warning)
+            terminal.warn(f"{one.path}: {warning}" if len(done) > 1 else warning)
         terminal.result(updated_text(str(one.path), one.snapshot, one.was))
     return ExitCode.DATA_LOST if any(one.lost for one in done) else ExitCode.DONE

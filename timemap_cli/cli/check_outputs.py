@@ -41,7 +41,7 @@ def tell(
     """Say every verdict in each of the formats wanted; warnings of the replays go to stderr."""
     for case in cases:
         for warning in case.warnings:
-            terminal.warn(warning)
+            terminal.warn(f"{case.name}: {warning}" if len(cases) > 1 else warning)
     for form, file in wanted:
         text = _formatted(form, cases)
         if file is None:
