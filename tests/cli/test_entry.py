@@ -10,12 +10,23 @@ import pytest
 from tests.cli.program import python
 
 
-def test_a_closed_pipe_ends_quietly():
-    code = "from timemap_cli.cli.entry import run; import sys; sys.argv = ['timemap', 'config']; run()"
+def buffered():
+    """The environment of most users: with PYTHONUNBUFFERED nothing is left to write at the end."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+
+
+@pytest.mark.parametrize("word", ["config", "--help", "--version"])
+def test_a_closed_pipe_ends_quietly(word):
+    code = f"from timemap_cli.cli.entry import run; import sys; sys.argv = ['timemap', '{word}']; run()"
     read_end, write_end = os.pipe()
     os.close(read_end)
     ran = subprocess.run(
-        [sys.executable, "-c", code], stdout=write_end, stderr=subprocess.PIPE, timeout=60, check=False
+        [sys.executable, "-c", code],
+        stdout=write_end,
+        stderr=subprocess.PIPE,
+        timeout=60,
+        check=False,
+        env=buffered(),
     )
     os.close(write_end)
     assert (ran.returncode, ran.stderr) == (0, b"")

@@ -140,7 +140,8 @@ def test_too_little_memory_is_one_error(monkeypatch):
 
 
 @pytest.mark.parametrize("args", [["config"], ["--help"], ["--version"], ["changes", "room.mcap"]])
-def test_a_full_disk_behind_standard_output_is_one_error(args):
+def test_a_full_disk_behind_standard_output_is_one_error(args, monkeypatch):
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # nothing would be left to write at the end
     with Path("/dev/full").open("w") as full:
         command = [sys.executable, "-m", "timemap_cli", *args]
         ran = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False)

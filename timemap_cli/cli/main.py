@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 
 import click
 
@@ -57,8 +58,9 @@ def main(args: Sequence[str], terminal: Terminal | None = None) -> int:
 
 def _exit_code(args: Sequence[str], terminal: Terminal) -> int:
     """The code that the command returned; click's own complaints become a UsageError."""
+    told = StringIO()  # what click prints: help and version
     try:
-        with redirect_stdout(terminal.stdout), redirect_stderr(terminal.stderr):
+        with redirect_stdout(told), redirect_stderr(terminal.stderr):
             code = timemap.main(list(args), prog_name="timemap", standalone_mode=False, obj=terminal)
     except click.exceptions.NoArgsIsHelpError as error:
         terminal.note(error.ctx.get_help() if error.ctx else "")
@@ -68,6 +70,9 @@ def _exit_code(args: Sequence[str], terminal: Terminal) -> int:
         raise UsageError(_sentence(error.format_message()), hint=f"{command} --help") from error
     except click.ClickException as error:
         raise UsageError(_sentence(error.format_message())) from error
+    finally:
+        if told.getvalue():
+            terminal.result(told.getvalue())
     return int(code or ExitCode.DONE)
 
 
