@@ -209,6 +209,7 @@ def test_several_scan_topics_and_none_named_list_lines_to_paste():
     assert tries == [
         "timemap replay log.mcap --scan-topic /scan_front",
         "timemap replay log.mcap --scan-topic /scan_rear",
+        "timemap replay log.mcap --scan-topic /scan_front --scan-topic /scan_rear",
     ]
     both = chosen(seen(edges, scans=TWO), scan_topics=("/scan_rear", "/scan_front"))
     assert both.scan_topics == ("/scan_rear", "/scan_front")

@@ -120,9 +120,16 @@ def select(
     tried = {topic: _try_poses(seen, topic, wanted, works) for topic in candidates}
     found = {topic: choice for topic, choice in tried.items() if choice is not None}
     if len(found) != 1:
+        lines = [seen.line("--scan-topic", topic) for topic in (found or candidates)]
+        if found:  # the lasers of one robot
+            first, *rest = found
+            lines.append(
+                " ".join(
+                    (seen.line("--scan-topic", first), *(f"--scan-topic {as_word(one)}" for one in rest))
+                )
+            )
         raise UsageError(
-            f"{len(candidates)} scan topics and none named: {', '.join(candidates)}",
-            hint="\n".join(seen.line("--scan-topic", topic) for topic in (found or candidates)),
+            f"{len(candidates)} scan topics and none named: {', '.join(candidates)}", hint="\n".join(lines)
         )
     ((topic, choice),) = found.items()
     others = ", ".join(name for name in candidates if name != topic)
