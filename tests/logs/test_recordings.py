@@ -168,9 +168,12 @@ def test_unreadable_metadata_is_told_and_the_files_are_read(tmp_path):
 def test_folder_of_several_recordings_is_refused_and_they_are_named(tmp_path):
     FORMATS["mcap"][0](tmp_path)
     recorded.write_mcap(tmp_path / "other.mcap", recorded.drive(ROS2))
+    (tmp_path / "a_bag").mkdir()
+    (tmp_path / "a_bag" / "metadata.yaml").touch()
+    (tmp_path / "notes").mkdir()
     with pytest.raises(UsageError, match="holds several recordings") as caught:
         Recording(tmp_path)
-    assert caught.value.hint == f"{tmp_path / 'other.mcap'}\n{tmp_path / 'run.mcap'}"
+    assert caught.value.hint == "\n".join(str(tmp_path / one) for one in ("other.mcap", "run.mcap", "a_bag"))
 
 
 def test_messages_outside_the_window_are_left_out(tmp_path):

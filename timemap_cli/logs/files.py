@@ -205,9 +205,10 @@ def _found_files(folder: Path) -> list[Path]:
     if not paths:
         raise UsageError(f"{folder} holds no recording", hint=READABLE)
     if len({_stem(one) for one in paths}) > 1:
+        bags = sorted(one for one in folder.iterdir() if (one / METADATA).is_file())
         raise UsageError(
             f"{folder} holds several recordings; name those you want",
-            hint="\n".join(str(one) for one in paths),
+            hint="\n".join(str(one) for one in (*paths, *bags)),
         )
     return paths
 
