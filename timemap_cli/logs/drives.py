@@ -80,6 +80,7 @@ def _differ(one: TransformBatch, other: TransformBatch) -> bool:
     both = known != NO_PARENT
     if not both.any():
         return False
-    far = np.linalg.norm(there[both, :, 3] - here[both, :, 3], axis=1) > OTHER_PLACE_M
+    apart = there[both, :, 3] - here[both, :, 3]
+    far = (apart * apart).sum(axis=1) > OTHER_PLACE_M * OTHER_PLACE_M
     trace = (there[both, :, :3] * here[both, :, :3]).sum(axis=(1, 2))
     return bool((far | (trace < TRACE_OF_OTHER_TURN)).mean() > OTHER_SHARE)

@@ -1,8 +1,8 @@
 """What a page of a result shows, as values that JSON knows."""
 
 import base64
-import gzip
 import json
+import zlib
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ _UNKNOWN, _CLEAR = 65535, 65534
 def page_data(reader: ResultReader) -> dict[str, Any]:
     """Everything a page shows of a result: estimates over time, events, how the memory was filled, provenance.
 
-    Ranges are in whole centimetres, as gzipped arrays in base64: uint16 little endian, 65534 clear, 65535 unknown.
+    Ranges are in whole centimetres, as zlib streams in base64: uint16 little endian, 65534 clear, 65535 unknown.
     Where there are more times than MOST_STEPS, each node's newest estimates at so many of them are kept.
     """
     history = {level: list(reader.history(level)) for level in reader.levels}
@@ -71,10 +71,7 @@ def _packed(kept: list[tuple[int, Estimate]], angle_bins: int) -> dict[str, str]
         "node": np.array([estimate.node for _, estimate in kept], "<u4"),
         "ranges": whole,
     }
-    return {
-        name: base64.b64encode(gzip.compress(array.tobytes(), mtime=0)).decode()
-        for name, array in arrays.items()
-    }
+    return {name: base64.b64encode(zlib.compress(array.tobytes())).decode() for name, array in arrays.items()}
 
 
 def _coverage(reader: ResultReader) -> dict[str, list[int]]:
