@@ -151,8 +151,8 @@ def settings_hash(settings: Settings) -> str:
     return hashlib.sha256(values.encode()).hexdigest()
 
 
-def read_yaml(path: Path) -> Mapping[str, Any]:
-    """The settings file as nested mappings; UsageError where it is missing or not YAML."""
+def read_yaml(path: Path, what: str = "settings", hint: str = _SHOWN) -> Mapping[str, Any]:
+    """A file of settings, or of something else, as nested mappings; UsageError where it is missing or not YAML."""
     # YAML is slow to import and most runs have no settings file.
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
@@ -161,19 +161,20 @@ def read_yaml(path: Path) -> Mapping[str, Any]:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise UsageError(
-            f"no settings file {path}", hint=f"timemap config > {shlex.quote(str(path))}"
+            f"no {what} file {path}",
+            hint=f"timemap config > {shlex.quote(str(path))}" if what == "settings" else hint,
         ) from error
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror or str(error)).lower() if isinstance(error, OSError) else "it is not a text"
-        raise UsageError(f"cannot read the settings file {path}: {reason}", hint=_SHOWN) from error
+        raise UsageError(f"cannot read the {what} file {path}: {reason}", hint=hint) from error
     try:
         values = YAML(typ="safe", pure=True).load(text)
     except (YAMLError, ValueError) as error:
-        raise UsageError(f"{path} is not YAML: {_yaml_trouble(error)}", hint=_SHOWN) from error
+        raise UsageError(f"{path} is not YAML: {_yaml_trouble(error)}", hint=hint) from error
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise UsageError(f"{path} holds no settings", hint=_SHOWN)
+        raise UsageError(f"{path} holds no {what}", hint=hint)
     return values
 
 

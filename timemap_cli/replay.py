@@ -4,7 +4,7 @@ import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
@@ -12,9 +12,11 @@ from typing import Any, Protocol
 from timemap_cli import assembly
 from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.logs.beams import BeamCounts
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
+from timemap_cli.model.nodes import Node
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
@@ -86,6 +88,16 @@ def replay(
         changes = changes_document(writing.tracker.events, observing.newest_ns)
         result.finish(metadata, dump(settings), _report(plan, summary), changes)
     return summary
+
+
+def lay_nodes(logs: Sequence[Path], settings: Settings) -> Sequence[Node]:
+    """The nodes that a replay of the recordings would make, without learning anything."""
+    with ExitStack() as stack:
+        recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
+        observing = Observing(recordings, survey(recordings, settings), assembly.observer(settings, ()))
+        for _ in observing.steps(None, None):
+            pass
+        return tuple(observing.nodes)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
@@ -197,6 +209,11 @@ def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:
         yield f"the result spans {writing.span_ns / 86400e9:.0f} days; Foxglove and Lichtblick open up to 93"
 
 
+def _shares(counts: BeamCounts) -> dict[str, float]:
+    """Share of each kind of beam in the sample that was looked at before the replay."""
+    return {kind: round(count / max(1, counts.total), 4) for kind, count in asdict(counts).items()}
+
+
 def _metadata(settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary) -> dict[str, str]:
     """What the result's metadata record says of where it comes from."""
     inputs = [{"name": recording.path.name, "sha256": sha256(recording.path)} for recording in recordings]
@@ -218,4 +235,5 @@ def _report(plan: Survey, summary: ReplaySummary) -> dict[str, Any]:
         "levels": list(summary.levels),
         "scans": {"read": summary.scans_read, "used": summary.scans_used, "dropped": dict(summary.dropped)},
         "no_return": plan.no_return,
+        "beams": {topic: _shares(counts) for topic, counts in sorted(plan.beam_counts.items())},
     }

@@ -7,6 +7,7 @@ import click
 
 from timemap_cli import __version__
 from timemap_cli.cli.changes import changes
+from timemap_cli.cli.check import check
 from timemap_cli.cli.config import config
 from timemap_cli.cli.diff import diff
 from timemap_cli.cli.info import info
@@ -31,7 +32,7 @@ def timemap() -> None:
     """
 
 
-for _command in (info, replay, changes, diff, report, plot, config):
+for _command in (info, replay, changes, diff, report, plot, check, config):
     timemap.add_command(_command)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from timemap_cli.config import InputSettings, Settings
 from timemap_cli.errors import UsageError
 from timemap_cli.logs.batches import PoseBatch, ScanBatch
-from timemap_cli.logs.beams import Beams, settle
+from timemap_cli.logs.beams import BeamCounts, Beams, settle
 from timemap_cli.logs.drives import Drive
 from timemap_cli.logs.frames import Frames
 from timemap_cli.logs.interleave import joined
@@ -36,6 +36,7 @@ class Survey:
 
     selection: Selection
     beams: Mapping[tuple[int, str], Beams]  # (index of the recording, scan topic); none where it has no scans
+    beam_counts: Mapping[str, BeamCounts]  # scan topic -> kinds of its beams in the sample
     missing_returns: Mapping[str, MissingReturns]  # scan topic -> what the test found; empty where not tested
     problems: tuple[str, ...]
     spans_ns: tuple[
@@ -82,6 +83,7 @@ def survey_sample(
     selection = select(seen, candidates, settings.input, poses.are_known_somewhere)
     chosen = {key: scans for key, scans in sample.scans.items() if key[1] in selection.scan_topics}
     beams = {key: settle(scans) for key, scans in chosen.items()}
+    counts = _counts(chosen, beams)
     missing: dict[str, MissingReturns] = {}
     for topic in selection.scan_topics:
         if settings.input.no_return == "auto":
@@ -94,7 +96,7 @@ def survey_sample(
         *_short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
-    return Survey(selection, beams, missing, problems, spans_ns, sample.drives)
+    return Survey(selection, beams, counts, missing, problems, spans_ns, sample.drives)
 
 
 def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:
@@ -188,6 +190,18 @@ def _pose_topics(
         for name in sorted(found)
         if topics.get(name) in POSE_TYPES
     )
+
+
+def _counts(
+    scans: Mapping[tuple[int, str], Sequence[ScanBatch]], beams: Mapping[tuple[int, str], Beams]
+) -> dict[str, BeamCounts]:
+    """Kinds of the beams of each topic, over all recordings."""
+    counts: dict[str, BeamCounts] = {}
+    for (index, topic), batches in scans.items():
+        for batch in batches:
+            counted = beams[index, topic].count(batch.ranges, batch.range_max)
+            counts[topic] = counts.get(topic, BeamCounts()) + counted
+    return counts
 
 
 def _are_clear(found: MissingReturns | None, wanted: InputSettings) -> bool:

@@ -1,0 +1,151 @@
+"""A recording or a result against its baseline: replaying where that is due, comparing, and writing baselines."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from timemap_cli.checks import baseline_file
+from timemap_cli.checks.baseline_file import Baseline
+from timemap_cli.checks.compare import compare
+from timemap_cli.checks.snapshot import Snapshot
+from timemap_cli.checks.taken import taken
+from timemap_cli.checks.tolerances import defaults
+from timemap_cli.checks.verdict import CheckedCase, Verdict
+from timemap_cli.config import load
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.model.nodes import Node
+from timemap_cli.replay import Progress, ReplaySummary, lay_nodes, replay
+from timemap_cli.results.atomic_file import AtomicFile
+from timemap_cli.results.container import is_result
+from timemap_cli.results.reader import ResultReader
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What is to be checked against what."""
+
+    sources: tuple[Path, ...]  # one result, or recordings
+    baseline: Path
+    name: str
+    config: Path | None = None  # settings of the replay
+    output: Path | None = None  # where the result of the replay stays; None: nowhere
+    force: bool = False  # whether that may be replaced
+    tolerances: Mapping[str, float] = field(default_factory=dict)  # above those of the baseline
+    exact: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Updated:
+    """A baseline that was written."""
+
+    path: Path
+    snapshot: Snapshot
+    was: Verdict | None  # the new one against the old one; None: there was none, or none to compare with
+    lost: bool
+    warnings: tuple[str, ...]
+
+
+def check(one: Check, progress: Progress | None = None) -> CheckedCase:
+    """Compare with the baseline; recordings are replayed with the baseline's nodes.
+
+    Raises UsageError where there is no baseline or nothing can be compared, and what a replay raises.
+    """
+    baseline = baseline_file.read(one.baseline)
+    with _result(one, baseline.expected.nodes, progress) as (result, summary):
+        with ResultReader(result) as reader:
+            found = taken(reader)
+        verdict = compare(
+            baseline.expected,
+            found,
+            {**defaults(), **baseline.tolerances, **one.tolerances},
+            name=one.name,
+            baseline=str(one.baseline),
+            exact=one.exact,
+        )
+    lost, warnings = _trouble(summary)
+    return CheckedCase(one.name, str(one.baseline), verdict, lost=lost, warnings=warnings)
+
+
+def update(one: Check, progress: Progress | None = None) -> Updated:
+    """Write the baseline anew, in place of an older one; its tolerances and its nodes stay.
+
+    `tolerances` of the check are kept in the file. Raises what `check` raises, and UsageError where something
+    else than a baseline stands there.
+    """
+    old = baseline_file.read(one.baseline) if one.baseline.exists() else None
+    nodes = old.expected.nodes if old else ()
+    with _result(one, nodes, progress) as (result, summary), ResultReader(result) as reader:
+        found = taken(reader)
+    tolerances = {**(old.tolerances if old else {}), **one.tolerances}
+    with AtomicFile(one.baseline, force=True, replaced="a baseline") as file:
+        file.write(baseline_file.dump(Baseline(found, tolerances)).encode())
+        file.commit()
+    return Updated(one.baseline, found, _against(old, found, one), *_trouble(summary))
+
+
+def checked(one: Check) -> CheckedCase:
+    """The same as `check`; what goes wrong becomes a case without a verdict."""
+    try:
+        return check(one)
+    except TimemapError as error:
+        return CheckedCase(one.name, str(one.baseline), None, error)
+
+
+def _against(old: Baseline | None, found: Snapshot, one: Check) -> Verdict | None:
+    if old is None:
+        return None
+    try:
+        return compare(
+            old.expected,
+            found,
+            {**defaults(), **old.tolerances},
+            name=one.name,
+            baseline=str(one.baseline),
+            exact=True,
+        )
+    except UsageError:
+        return None
+
+
+@contextmanager
+def _result(
+    one: Check, nodes: Sequence[Node], progress: Progress | None
+) -> Iterator[tuple[Path, ReplaySummary | None]]:
+    """The result that is checked: itself, or what a replay of the recordings makes for the while."""
+    results = [source for source in one.sources if is_result(source)]
+    if results and len(one.sources) > 1:
+        raise UsageError(
+            f"{results[0]} is a result: it is checked alone",
+            hint=f"timemap check {results[0]} --baseline {one.baseline}",
+        )
+    if results:
+        yield results[0], None
+        return
+    with TemporaryDirectory(prefix="timemap-check-") as folder:
+        yield from _replayed(one, nodes, Path(folder), progress)
+
+
+def _replayed(
+    one: Check, nodes: Sequence[Node], folder: Path, progress: Progress | None
+) -> Iterator[tuple[Path, ReplaySummary]]:
+    settings = load(one.config)
+    given = folder / "nodes"
+    lines = [f"{node.x}, {node.y}\n" for node in nodes or lay_nodes(one.sources, settings)]
+    given.write_text("".join(lines), encoding="utf-8")
+    output = one.output or folder / "checked.timemap.mcap"
+    try:
+        summary = replay(one.sources, output, settings, force=one.force, nodes=given, progress=progress)
+    except UsageError as error:
+        if str(given) not in error.message:
+            raise
+        raise UsageError(
+            f"nothing can be compared with {one.baseline}: no scan comes near one of its nodes",
+            hint=f"timemap info {one.sources[0]}",
+        ) from error
+    yield output, summary
+
+
+def _trouble(summary: ReplaySummary | None) -> tuple[bool, tuple[str, ...]]:
+    return (summary.data_lost, summary.warnings) if summary else (False, ())

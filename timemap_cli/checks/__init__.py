@@ -1,0 +1,1 @@
+"""What a map is expected to be, and whether it still is."""

@@ -1,0 +1,77 @@
+"""What probably made the difference, told from which figures are out of tolerance together."""
+
+from collections.abc import Iterator, Sequence
+
+from timemap_cli.checks.snapshot import Snapshot
+from timemap_cli.checks.verdict import Measure
+from timemap_cli.checks.whole_measures import changed_settings
+
+
+def likely_causes(expected: Snapshot, found: Snapshot, failures: Sequence[Measure]) -> Iterator[str]:
+    """Sentences, the likeliest cause first; none where nothing failed."""
+    failed: dict[str, Measure] = {}
+    for one in failures:  # the worst level of each
+        failed.setdefault(one.name, one)
+    if not failed:
+        return
+    for setting in changed_settings(expected.settings, found.settings):
+        yield f"a setting was changed: {setting}"
+    if expected.no_return != found.no_return:
+        yield f"a missing return means '{found.no_return}' now and meant '{expected.no_return}': {_NO_RETURN}"
+    if beams := failed.get("beams.kinds"):
+        yield f"{beams.text}: the driver, or the code that it writes for a missing return"
+    yield from _geometry(failed)
+    yield from _scans(expected, found, failed)
+    yield from different_inputs(expected, found)
+
+
+_NO_RETURN = "input.no_return, or the code that the driver writes for one"
+
+
+def different_inputs(expected: Snapshot, found: Snapshot) -> Iterator[str]:
+    """What is another recording than the baseline's."""
+    known = {one.name: one.sha256 for one in expected.inputs}
+    now = {one.name: one.sha256 for one in found.inputs}
+    others = [name for name, digest in now.items() if name in known and known[name] != digest]
+    if others:
+        yield f"other recordings of the same name: {', '.join(others)}"
+    if missing := [name for name in known if name not in now]:
+        yield f"recordings that are not replayed: {', '.join(missing)}"
+    if new := [name for name in now if name not in known]:
+        yield f"recordings that the baseline does not know: {', '.join(new)}"
+
+
+def _geometry(failed: dict[str, Measure]) -> Iterator[str]:
+    if turn := failed.get("map.turn"):
+        yield f"the map is turned ({turn.text}): the laser's yaw on the robot, or the heading of the localisation"
+    if shift := failed.get("map.shift"):
+        yield f"the map is shifted ({shift.text}): the localisation, or where the map frame lies"
+    if "nodes.shift" in failed and "nodes.turn" in failed:
+        yield (
+            "scans lie differently depending on how the robot moved: the stamps of scans and poses do not fit "
+            "together (a delay of either), or the localisation is worse"
+        )
+    elif "nodes.shift" in failed:
+        yield "scans lie differently depending on where the robot looked: the laser's place on the robot"
+    elif "nodes.turn" in failed:
+        yield "single nodes are turned: the localisation's heading, or a delay while turning"
+    if (
+        not {"map.turn", "map.shift", "nodes.shift", "nodes.turn"} & failed.keys()
+        and "ranges.places" in failed
+    ):
+        yield f"something stands elsewhere: {failed['ranges.places'].spots[0].text}"
+
+
+def _scans(expected: Snapshot, found: Snapshot, failed: dict[str, Measure]) -> Iterator[str]:
+    if "scans.read" in failed:
+        change = found.scans.read / max(1, expected.scans.read) - 1
+        which = "fewer" if change < 0 else "more"
+        yield f"{100 * abs(change):.1f} % {which} scans: a part of a recording, or single scans of it"
+    if "scans.used" in failed:
+        reasons = {**expected.scans.dropped, **found.scans.dropped}
+        told = [
+            f"{reason} {found.scans.dropped.get(reason, 0)} instead of {expected.scans.dropped.get(reason, 0)}"
+            for reason in sorted(reasons)
+            if found.scans.dropped.get(reason, 0) != expected.scans.dropped.get(reason, 0)
+        ]
+        yield f"scans are dropped for other reasons: {', '.join(told)}"

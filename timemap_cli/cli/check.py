@@ -1,0 +1,176 @@
+"""`timemap check`: a recording or a result against its baseline."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from timemap_cli.cli.chosen import title_of
+from timemap_cli.cli.paths import NAMED_PATH
+from timemap_cli.cli.progress import ProgressBar
+from timemap_cli.cli.terminal import Terminal
+from timemap_cli.errors import ExitCode, UsageError
+
+if TYPE_CHECKING:
+    from timemap_cli.checking import Check, Updated
+    from timemap_cli.checks.verdict import CheckedCase
+
+_FORMATS = ("text", "json", "junit", "github", "markdown")
+_USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite regression.yaml"
+
+
+@click.command(short_help="whether a recording still gives the map that its baseline says")
+@click.argument("sources", nargs=-1, type=NAMED_PATH, metavar="[RESULT | LOG...]")
+@click.option("--baseline", type=NAMED_PATH, metavar="FILE", help="What the map is expected to be.")
+@click.option("--update-baseline", "updates", is_flag=True, help="Write the baseline instead of checking.")
+@click.option("--suite", type=NAMED_PATH, metavar="FILE", help="Run the checks that this file lists.")
+@click.option("--jobs", type=click.IntRange(1), default=1, metavar="N", help="Checks of a suite at a time.")
+@click.option("--config", type=NAMED_PATH, metavar="FILE", help="Settings of the replay.")
+@click.option("-o", "--output", type=NAMED_PATH, metavar="OUT.mcap", help="Keep the result of the replay.")
+@click.option("--force", is_flag=True, help="Replace an existing result.")
+@click.option(
+    "--tolerance",
+    "tolerances",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Instead of the baseline's; may be repeated: ranges.moved=0.02.",
+)
+@click.option("--exact", is_flag=True, help="Demand the same digests, too.")
+@click.option(
+    "--format",
+    "formats",
+    multiple=True,
+    metavar="FORMAT[=FILE]",
+    help="text, json, junit, github or markdown, to a file if one is named; may be repeated. [default: text]",
+)
+@click.pass_obj
+def check(
+    terminal: Terminal,
+    /,
+    sources: tuple[Path, ...],
+    baseline: Path | None,
+    updates: bool,
+    suite: Path | None,
+    jobs: int,
+    formats: tuple[str, ...],
+    tolerances: tuple[str, ...],
+    exact: bool,
+    **replaying: Any,
+) -> ExitCode:
+    """Tell whether RESULT, or what a replay of LOG... gives, is still what its baseline says.
+
+    \b
+      timemap check monday.mcap --baseline monday.yaml --update-baseline
+      timemap check monday.mcap --baseline monday.yaml
+      timemap check --suite regression.yaml --format junit=junit.xml --format github
+
+    Exit code 4: something is out of tolerance. 2: nothing can be compared. 3: all is within tolerance, but
+    data was lost.
+    """
+    from timemap_cli.checks.tolerances import parsed
+    from timemap_cli.checks.verdict import exit_code_of
+
+    wanted, limits = _wanted(formats), parsed(tolerances)
+    if suite is not None:
+        _require_alone(suite, sources, baseline, replaying)
+        from timemap_cli import suite as suites
+
+        checks = suites.read_suite(suite, limits, exact=exact)
+        if updates:
+            return _tell_updated(terminal, suites.update_all(checks, jobs))
+        cases = suites.run(checks, jobs)
+    else:
+        one = _check(sources, baseline, limits, exact, **replaying)
+        from timemap_cli import checking
+
+        with ProgressBar(terminal) as progress:
+            if updates:
+                return _tell_updated(terminal, [checking.update(one, progress)])
+            cases = [checking.check(one, progress)]
+    _tell(terminal, cases, wanted)
+    return exit_code_of(cases)
+
+
+def _check(
+    sources: tuple[Path, ...],
+    baseline: Path | None,
+    tolerances: Mapping[str, float],
+    exact: bool,
+    **replaying: Any,
+) -> "Check":
+    if baseline is None or not sources:
+        missing = "no recording or result is named" if baseline else "--baseline is missing"
+        raise UsageError(missing, hint=_USES)
+    from timemap_cli.checking import Check
+
+    name = title_of(sources[0])
+    return Check(sources, baseline, name, tolerances=tolerances, exact=exact, **replaying)
+
+
+def _require_alone(
+    suite: Path, sources: tuple[Path, ...], baseline: Path | None, replaying: Mapping[str, Any]
+) -> None:
+    """UsageError where something is given that the suite says for each of its checks."""
+    given = [str(source) for source in sources]
+    given += ["--baseline"] if baseline else []
+    given += [f"--{name}" for name, value in replaying.items() if value]
+    if given:
+        raise UsageError(f"{given[0]} does not go with --suite: {suite} says it for each check", hint=_USES)
+
+
+def _wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
+    """Formats and the files they go to; None is standard output, which takes one at most."""
+    wanted: list[tuple[str, Path | None]] = []
+    for word in formats or ("text",):
+        name, _, file = word.partition("=")
+        if name not in _FORMATS:
+            raise UsageError(f"unknown format {name}", hint=f"one of {', '.join(_FORMATS)}")
+        wanted.append((name, Path(file) if file else None))
+    if sum(file is None for _, file in wanted) > 1:
+        raise UsageError("standard output takes one format", hint="--format junit=junit.xml --format github")
+    return wanted
+
+
+def _tell(
+    terminal: Terminal, cases: "Sequence[CheckedCase]", wanted: Sequence[tuple[str, Path | None]]
+) -> None:
+    for case in cases:
+        for warning in case.warnings:
+            terminal.warn(warning)
+    for form, file in wanted:
+        text = _formatted(form, cases)
+        if file is None:
+            terminal.result(text)
+        else:
+            file.write_text(text, encoding="utf-8")
+        if form == "github" and (summary := terminal.variables.get("GITHUB_STEP_SUMMARY")):
+            with Path(summary).open("a", encoding="utf-8") as stream:
+                stream.write(_formatted("markdown", cases) + "\n")
+
+
+def _formatted(form: str, cases: "Sequence[CheckedCase]") -> str:
+    from timemap_cli.reports.check_github import check_github
+    from timemap_cli.reports.check_json import check_json
+    from timemap_cli.reports.check_junit import check_junit
+    from timemap_cli.reports.check_markdown import check_markdown
+    from timemap_cli.reports.check_text import check_text
+
+    writers = {
+        "text": check_text,
+        "json": check_json,
+        "junit": check_junit,
+        "github": check_github,
+        "markdown": check_markdown,
+    }
+    return writers[form](cases)
+
+
+def _tell_updated(terminal: Terminal, done: "Sequence[Updated]") -> ExitCode:
+    from timemap_cli.reports.check_text import updated_text
+
+    for one in done:
+        for warning in one.warnings:
+            terminal.warn(warning)
+        terminal.result(updated_text(str(one.path), one.snapshot, one.was))
+    return ExitCode.DATA_LOST if any(one.lost for one in done) else ExitCode.DONE
