@@ -4,6 +4,7 @@
 # make check   ruff, mypy, import-linter
 # make bench   how fast a replay is beside plain reading
 # make changes-bench  how well changes are told in a simulated building whose changes are known
+# make mutations  which mistakes timemap check catches, and whether noise alone passes
 # make paper   the paper's experiments: docs/paper.md and its figures
 # make clean   remove what the above made, except .venv
 
@@ -15,7 +16,7 @@ SAMPLES := sample_logs/patrol_monday.mcap sample_logs/patrol_tuesday.bag sample_
 # The versions in constraints.txt hold for the tools that build the package, too.
 PIP_INSTALL := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
 
-.PHONY: setup demo test check bench changes-bench paper clean
+.PHONY: setup demo test check bench changes-bench mutations paper clean
 .DELETE_ON_ERROR:
 
 setup: $(VENV)/timemap.stamp
@@ -40,6 +41,9 @@ bench: $(VENV)/timemap.stamp
 
 changes-bench: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.changes
+
+mutations: $(VENV)/timemap.stamp
+	$(BIN)/python -m benchmarks.mutations
 
 paper: $(VENV)/paper.stamp
 	$(BIN)/python -m benchmarks.paper
