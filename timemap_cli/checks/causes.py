@@ -59,7 +59,8 @@ def _geometry(failed: dict[str, Measure]) -> Iterator[str]:
         not {"map.turn", "map.shift", "nodes.shift", "nodes.turn"} & failed.keys()
         and "ranges.places" in failed
     ):
-        yield f"something stands elsewhere: {failed['ranges.places'].spots[0].text}"
+        spot = failed["ranges.places"].spots[0]
+        yield f"something stands elsewhere around {spot.x:.2f}, {spot.y:.2f}: {spot.text}"
 
 
 def _scans(expected: Snapshot, found: Snapshot, failed: dict[str, Measure]) -> Iterator[str]:

@@ -120,6 +120,7 @@ def _unequal(expected: Snapshot, found: Snapshot) -> Iterator[str]:
         one, other = expected.levels[level].digests, found.levels[level].digests
         nodes = [str(i) for i in range(max(len(one), len(other))) if one[i : i + 1] != other[i : i + 1]]
         if nodes:
-            yield f"level {level} at {len(nodes)} nodes: {', '.join(nodes[:8])}{', ...' if len(nodes) > 8 else ''}"
+            rest = f" and {len(nodes) - 8} more" if len(nodes) > 8 else ""
+            yield f"level {level} at node {', '.join(nodes[:8])}{rest}"
     if expected.events != found.events:
         yield "the change events"

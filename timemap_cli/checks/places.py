@@ -1,6 +1,5 @@
 """Places of the map where several nodes agree that a surface has moved."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,12 +7,12 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
 
 _CELL_M = 0.5  # about the size of a thing
 _LEAST_ENDS = 8
 _LEAST_NODES = 3  # people who stood about are remembered by one or two
 _LEAST_SHARE = 0.4  # of the ends in the cell: along a wall single ends move at its edges
-_NEAR_M = 1.0  # cells of one thing
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +38,7 @@ class Ends:
 class MovedPlace:
     """Where surfaces moved."""
 
-    x: float  # [m] mean of the ends that moved
+    x: float  # [m] median of the ends that moved
     y: float
     ends: int  # that moved
     nodes: tuple[int, ...]  # that saw it, the one with most ends first
@@ -48,45 +47,59 @@ class MovedPlace:
 
 def moved_places(ends: Ends, step_m: float, nodes: int) -> list[MovedPlace]:
     """The places where ends lie `step_m` and more off, most ends first; `nodes` is how many were compared."""
-    if not len(ends.x):
-        return []
-    found: list[MovedPlace] = []
+    which = np.flatnonzero(_crowded(ends, ends.distance > step_m))
+    places = [_place(ends, which[group]) for group in _touching(ends.x[which], ends.y[which])]
     least = min(_LEAST_NODES, nodes)
+    found = [place for place in places if len(place.nodes) >= least]
+    return sorted(found, key=lambda place: (-place.ends, place.x, place.y))
+
+
+def _crowded(ends: Ends, moved: Bools) -> Bools:
+    """Those of the moved ends (n,) in whose cell many have moved and few stayed."""
+    found = np.zeros_like(moved)
     for shift in (
         (0.0, 0.0),
         (0.5, 0.0),
         (0.0, 0.5),
         (0.5, 0.5),
     ):  # a thing may lie across the borders of cells
-        columns = np.floor(np.stack([ends.x, ends.y]) / _CELL_M + np.array(shift)[:, None]).astype(np.int64)
-        _, cells, counts = np.unique(columns, axis=1, return_inverse=True, return_counts=True)
+        places = np.stack([ends.x, ends.y]) / _CELL_M + np.array(shift)[:, None]
+        _, cells = np.unique(np.floor(places), axis=1, return_inverse=True)
         cells = cells.reshape(-1)
-        moved = ends.distance > step_m
+        counts = np.bincount(cells)
         hits = np.bincount(cells[moved], minlength=len(counts))
-        for cell in np.flatnonzero((hits >= _LEAST_ENDS) & (hits >= _LEAST_SHARE * counts)).tolist():
-            place = _place(ends, np.flatnonzero(moved & (cells == cell)))
-            if len(place.nodes) >= least:
-                found.append(place)
-    return _apart(sorted(found, key=lambda place: (-place.ends, place.x, place.y)))
+        found |= moved & ((hits >= _LEAST_ENDS) & (hits >= _LEAST_SHARE * counts))[cells]
+    return found
+
+
+def _touching(x: Floats, y: Floats) -> list[Ints]:
+    """Indices of points (n,) by groups whose cells touch each other, if only at a corner."""
+    members: dict[tuple[int, int], list[int]] = {}
+    for i, cell in enumerate(np.floor(np.stack([x, y], axis=1) / _CELL_M).astype(int).tolist()):
+        members.setdefault((cell[0], cell[1]), []).append(i)
+    groups = []
+    left = set(members)
+    for start in sorted(members):
+        waiting, group = [start] if start in left else [], []
+        while waiting:
+            cell = waiting.pop()
+            if cell in left:
+                left.remove(cell)
+                group += members[cell]
+                waiting += [(cell[0] + dx, cell[1] + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+        if group:
+            groups.append(np.array(sorted(group), np.int64))
+    return groups
 
 
 def _place(ends: Ends, which: Ints) -> MovedPlace:
+    x, y, distance = (np.sort(part[which]) for part in (ends.x, ends.y, ends.distance))
     nodes, counts = np.unique(ends.node[which], return_counts=True)
-    order = np.lexsort((nodes, -counts))
-    distances = np.sort(ends.distance[which])
+    middle = (len(which) - 1) // 2
     return MovedPlace(
-        x=float(ends.x[which].mean()),
-        y=float(ends.y[which].mean()),
+        x=float(x[middle]),
+        y=float(y[middle]),
         ends=len(which),
-        nodes=tuple(nodes[order].tolist()),
-        distance=float(distances[(len(distances) - 1) // 2]),
+        nodes=tuple(nodes[np.lexsort((nodes, -counts))].tolist()),
+        distance=float(distance[middle]),
     )
-
-
-def _apart(places: Sequence[MovedPlace]) -> list[MovedPlace]:
-    """Of places near each other the one with most ends."""
-    kept: list[MovedPlace] = []
-    for place in places:
-        if all(np.hypot(place.x - one.x, place.y - one.y) > _NEAR_M for one in kept):
-            kept.append(place)
-    return kept

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from timemap_cli.checks.verdict import CheckedCase
-from timemap_cli.reports.check_values import compared, outcome, title
+from timemap_cli.reports.check_values import compared, outcome, title, within
 
 _MOST = 10  # GitHub shows so many errors of one step
 
@@ -19,12 +19,13 @@ def _case(case: CheckedCase) -> Iterator[str]:
         yield _command("error", case, name, case.error.message if case.error else "nothing was compared")
         return
     if outcome(case) == "passed":
-        told = f"{len(case.verdict.measures)} figures are within tolerance"
+        told = f"{within(case.verdict)} within tolerance"
         yield _command("warning" if case.lost else "notice", case, name, "\n".join([told, *case.warnings]))
         return
     causes = [f"likely: {cause}" for cause in case.verdict.causes]
     for one in case.verdict.failures[:_MOST]:
         lines = [f"{one.text} ({compared(one)})", *causes]
+        causes = []  # the first annotation tells them
         yield _command("error", case, f"{name}: {title(one)}", "\n".join(lines))
     if case.verdict.unequal:
         yield _command("error", case, f"{name}: exact", "\n".join(case.verdict.unequal))

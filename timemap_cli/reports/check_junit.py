@@ -28,19 +28,27 @@ def _suite(case: CheckedCase) -> ET.Element:
         "errors": str(sum(test.find("error") is not None for test in tests)),
     }
     suite = ET.Element("testsuite", {"name": _text(case.name), **counts, "skipped": "0", "time": _NO_TIME})
+    _add_properties(suite, case)
     suite.extend(tests)
-    if case.verdict and (case.verdict.causes or case.verdict.notes):
-        told = [f"likely cause: {cause}" for cause in case.verdict.causes]
-        told += [note for note in case.verdict.notes if note not in case.verdict.causes]
-        ET.SubElement(suite, "system-out").text = _text("\n".join(told))
     return suite
+
+
+def _add_properties(suite: ET.Element, case: CheckedCase) -> None:
+    """What is said of the check as a whole; Surefire knows no text beside the test cases."""
+    told = [("baseline", case.baseline)]
+    if case.verdict:
+        told += [("likely cause", cause) for cause in case.verdict.causes]
+        told += [("note", note) for note in case.verdict.notes if note not in case.verdict.causes]
+    properties = ET.SubElement(suite, "properties")
+    for name, value in told:
+        ET.SubElement(properties, "property", {"name": name, "value": _text(value)})
 
 
 def _tests(case: CheckedCase, verdict: Verdict) -> list[ET.Element]:
     tests = [_test(case, title(measure)) for measure in verdict.measures]
     for test, measure in zip(tests, verdict.measures, strict=True):
         if not measure.passed:
-            _add_failure(test, measure)
+            _add_failure(test, measure, verdict.causes)
     if verdict.unequal is not None:
         tests.append(_test(case, "exact"))
         if verdict.unequal:
@@ -63,11 +71,12 @@ def _test(case: CheckedCase, name: str) -> ET.Element:
     return ET.Element("testcase", place)
 
 
-def _add_failure(test: ET.Element, measure: Measure) -> None:
+def _add_failure(test: ET.Element, measure: Measure, causes: Sequence[str]) -> None:
     message = f"{compared(measure)}: {measure.text}"
     failure = ET.SubElement(test, "failure", {"message": _text(message), "type": measure.name})
     spots = [f"{spot.x:.2f}, {spot.y:.2f}: {spot.text}" for spot in measure.spots]
-    failure.text = _text("\n".join([message, *spots]))
+    likely = [f"likely cause: {cause}" for cause in causes]
+    failure.text = _text("\n".join([message, *spots, *likely]))
 
 
 def _sums(suites: Sequence[ET.Element]) -> dict[str, str]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from timemap_cli.checks.verdict import CheckedCase, Measure, Verdict
-from timemap_cli.reports.check_values import outcome, title, value
+from timemap_cli.reports.check_values import outcome, title, value, within
 
 _MARKS = {"passed": "✅", "failed": "❌", "error": "⚠️"}
 
@@ -30,7 +30,7 @@ def _case(case: CheckedCase) -> Iterator[str]:
 
 def _failures(verdict: Verdict) -> Iterator[str]:
     if not verdict.failures:
-        yield f"All {len(verdict.measures)} figures are within tolerance."
+        yield f"{within(verdict).capitalize()} within tolerance."
         yield ""
         return
     yield "| out of tolerance | is | allowed | what |"

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 
 from timemap_cli.checks.snapshot import Snapshot
-from timemap_cli.checks.verdict import CheckedCase, Measure, Verdict
+from timemap_cli.checks.verdict import CheckedCase, Measure, Spot, Verdict
 from timemap_cli.reports.check_values import compared, outcome, title
-from timemap_cli.reports.tables import plural, table
+from timemap_cli.reports.tables import place, plural, table
 
 _SHOWN = 12  # failures; the others are counted
 
@@ -49,10 +49,14 @@ def _failures(verdict: Verdict) -> Iterator[str]:
     yield from table([_row(measure) for measure in failures[:_SHOWN]])
     if len(failures) > _SHOWN:
         yield f"  and {len(failures) - _SHOWN} more"
-    spots = [(spot.text, one) for one in failures for spot in one.spots[:3] if one.name == "ranges.places"]
+    spots = [(one, spot) for one in failures for spot in one.spots[:3] if one.name == "ranges.places"]
     if spots:
         yield ""
-        yield from (f"  {one.level}: {text}" for text, one in spots[:_SHOWN])
+        yield from table([("  place [m]", "level", "what moved"), *(_spot(*pair) for pair in spots[:_SHOWN])])
+
+
+def _spot(measure: Measure, spot: Spot) -> tuple[str, ...]:
+    return f"  {place(spot.x, spot.y)}", measure.level or "", spot.text
 
 
 def _row(measure: Measure) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """How the figures of a check are written, in every format."""
 
-from timemap_cli.checks.verdict import CheckedCase, Measure, Outcome
+from timemap_cli.checks.verdict import CheckedCase, Measure, Outcome, Verdict
 
 
 def title(measure: Measure) -> str:
@@ -22,6 +22,12 @@ def value(number: float, unit: str) -> str:
 def compared(measure: Measure) -> str:
     """The figure beside what is allowed."""
     return f"{value(measure.value, measure.unit)}, allowed {value(measure.allowed, measure.unit)}"
+
+
+def within(verdict: Verdict) -> str:
+    """`all 29 figures are`, of a check that passed."""
+    count = len(verdict.measures)
+    return "the one figure is" if count == 1 else f"all {count} figures are"
 
 
 def outcome(case: CheckedCase) -> str:

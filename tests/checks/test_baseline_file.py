@@ -1,0 +1,103 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.checks.making import EVENT, SECOND, rings, snapshot
+from timemap_cli.checks.baseline_file import Baseline, dump, read
+from timemap_cli.errors import TimemapError, UsageError
+
+UNDONE = replace(EVENT, until_ns=200 * SECOND, adopted=())
+
+
+def held(baseline):
+    """All of it in values that compare."""
+    one = baseline.expected
+    levels = {name: (r.ranges.tolist(), r.support.tolist(), r.digests) for name, r in one.levels.items()}
+    return replace(one, levels={}), levels, dict(baseline.tolerances)
+
+
+@pytest.fixture
+def baseline():
+    return Baseline(snapshot(events=(EVENT, UNDONE)), {"ranges.moved": 0.05})
+
+
+def test_what_is_written_is_read_back(tmp_path, baseline):
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(baseline))
+    assert held(read(path)) == held(baseline)
+    assert dump(read(path)) == dump(baseline)
+
+
+def test_names_with_odd_letters_are_read_back(tmp_path, baseline):
+    odd = replace(
+        baseline.expected,
+        map_frame='m: "a"\u2028\n#',
+        inputs=(replace(baseline.expected.inputs[0], name="- é{"),),
+    )
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(Baseline(odd, {})), encoding="utf-8")
+    assert read(path).expected.map_frame == odd.map_frame
+    assert read(path).expected.inputs == odd.inputs
+
+
+def test_a_ring_has_a_line_of_its_own_so_that_a_difference_is_local(baseline):
+    ranges = baseline.expected.levels["short"].ranges.copy()
+    ranges[1, 7] += 0.05
+    other = Baseline(replace(baseline.expected, levels={"short": rings(ranges)}), baseline.tolerances)
+    lines = zip(dump(baseline).splitlines(), dump(other).splitlines(), strict=True)
+    different = [one for one, two in lines if one != two]
+    assert len(different) == 1
+    assert different[0].startswith(
+        '    1: {digest: "000000000001", known: 360, clear: 0, support: 0.90, ranges: "'
+    )
+
+
+def test_a_node_that_a_level_does_not_know_has_no_line_and_is_unknown(tmp_path, baseline):
+    full = baseline.expected.levels["short"]
+    ranges = full.ranges.copy()
+    ranges[2] = np.nan
+    unknown = replace(full, ranges=ranges, digests=(*full.digests[:2], ""), support=np.array([0.9, 0.9, 0.0]))
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(Baseline(replace(baseline.expected, levels={"short": unknown}), {})))
+    assert "    2: {digest" not in path.read_text()
+    assert np.isnan(read(path).expected.levels["short"].ranges[2]).all()
+
+
+def test_a_missing_file_is_told_with_how_to_make_it(tmp_path):
+    with pytest.raises(UsageError) as refused:
+        read(tmp_path / "b.yaml")
+    assert refused.value.hint == "--update-baseline makes it"
+
+
+def test_another_file_is_no_baseline(tmp_path):
+    path = tmp_path / "b.yaml"
+    for content in (b"checks: []\n", b"\x89MCAP0\r\n", b"format: timemap.baseline/2\n"):
+        path.write_bytes(content)
+        with pytest.raises(UsageError, match=r"is not a baseline of the format timemap.baseline/1"):
+            read(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("scans: {read: 1000", "scans: {reed: 1000", "is damaged: 'read'"),
+        ("    1: {digest", "    7: {digest", "is damaged: there is no node 7"),
+        ('ranges: "', 'ranges: "?1 ', "is damaged: 361 angle bins instead of 360"),
+        ("events:\n-", "events:\n- {", "is damaged: "),
+    ],
+)
+def test_a_damaged_baseline_is_told(tmp_path, baseline, old, new, message):
+    text = dump(baseline)
+    assert old in text
+    path = tmp_path / "b.yaml"
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(TimemapError, match=message):
+        read(path)
+
+
+def test_an_unknown_tolerance_in_the_file_is_refused(tmp_path, baseline):
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(baseline).replace("ranges.moved: 0.05", "ranges.mooved: 0.05"))
+    with pytest.raises(UsageError, match=r"unknown tolerance ranges.mooved"):
+        read(path)

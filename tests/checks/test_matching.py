@@ -1,0 +1,18 @@
+from timemap_cli.checks.matching import matched
+from timemap_cli.model.nodes import Node
+
+
+def test_the_nearest_are_partners_and_each_has_one():
+    found = matched([Node(0, 0), Node(0.2, 0)], [Node(0.11, 0), Node(5, 5)], within_m=0.25)
+    assert found.pairs == ((1, 0),)
+    assert found.missing == (0,)
+    assert found.new == (1,)
+
+
+def test_nodes_keep_their_partner_whatever_their_numbers():
+    places = [Node(0, 0), Node(1, 0), Node(2, 0)]
+    assert matched(places, places[::-1], 0.25).pairs == ((0, 2), (1, 1), (2, 0))
+
+
+def test_no_nodes_have_no_partners():
+    assert matched([], [Node(0, 0)], 0.25).new == (0,)

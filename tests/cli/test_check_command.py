@@ -1,0 +1,199 @@
+import json
+
+import pytest
+
+from tests.cli.program import python, timemap
+from tests.cli.result_files import NODE, all_levels, write
+from tests.conftest import ROOT
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The current folder: two results, without and with a box, and the baseline of the first."""
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "plain.timemap.mcap", [(0, all_levels(box=False))])
+    write(tmp_path / "box.timemap.mcap", [(0, all_levels(box=True))])
+    assert timemap("check", "plain.timemap.mcap", "--baseline", "b.yaml", "--update-baseline").code == 0
+    return tmp_path
+
+
+def test_the_result_that_the_baseline_was_made_of_passes(folder):
+    ran = timemap("check", "plain.timemap.mcap", "--baseline", "b.yaml", "--exact")
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.startswith("passed  plain against b.yaml: ")
+
+
+def test_a_result_out_of_tolerance_ends_with_4(folder):
+    ran = timemap("check", "box.timemap.mcap", "--baseline", "b.yaml")
+    assert ran.code == 4
+    assert ran.out.startswith("failed  box against b.yaml: ")
+    assert "ranges.places (long)" in ran.out
+
+
+def test_tolerances_of_an_option_count_and_stay_in_a_baseline_that_is_written_with_them(folder):
+    wide = ("--tolerance", "ranges.moved=1", "--tolerance", "ranges.places=9")
+    wide += ("--tolerance", "ranges.step=9")
+    assert timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", *wide).code == 0
+    timemap("check", "plain.timemap.mcap", "--baseline", "b.yaml", "--update-baseline", *wide)
+    assert timemap("check", "box.timemap.mcap", "--baseline", "b.yaml").code == 0
+    timemap("check", "plain.timemap.mcap", "--baseline", "b.yaml", "--update-baseline")
+    assert "  ranges.moved: 1.0\n" in (folder / "b.yaml").read_text()
+
+
+def test_an_update_tells_what_is_new(folder):
+    ran = timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", "--update-baseline")
+    assert ran.code == 0
+    assert ran.out.startswith("b.yaml: 1 node, 3 levels, 0 change events\n")
+    assert "differs: level short at node 0" in ran.out
+    again = timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", "--update-baseline")
+    assert again.out.splitlines()[1] == "  nothing differs from the baseline that was there"
+
+
+def test_an_update_replaces_nothing_but_a_baseline(folder):
+    for name, content in (("notes.yaml", b"a: 1\n"), ("r.mcap", (folder / "box.timemap.mcap").read_bytes())):
+        (folder / name).write_bytes(content)
+        ran = timemap("check", "plain.timemap.mcap", "--baseline", name, "--update-baseline")
+        assert (ran.code, (folder / name).read_bytes()) == (2, content)
+        assert ran.err.startswith(f"error: {name} is not a baseline")
+
+
+def test_several_formats_go_to_their_files_and_one_to_stdout(folder):
+    ran = timemap(
+        "check", "box.timemap.mcap", "--baseline", "b.yaml",
+        "--format", "junit=j.xml", "--format", "json=j.json", "--format", "github",
+    )  # fmt: skip
+    assert ran.code == 4
+    assert ran.out.startswith("::error file=b.yaml,title=timemap check box%3A ")
+    assert (folder / "j.xml").read_text().startswith("<?xml")
+    assert json.loads((folder / "j.json").read_text())["exit_code"] == 4
+
+
+def test_the_github_format_appends_to_the_summary_of_the_job(folder):
+    summary = folder / "summary.md"
+    summary.write_text("before\n")
+    variables = {"GITHUB_STEP_SUMMARY": str(summary)}
+    timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", "--format", "github", variables=variables)
+    text = summary.read_text()
+    assert text.startswith("before\n### ❌ box: failed\n")
+
+
+def test_what_has_no_node_in_common_ends_with_2(folder):
+    far = [type(node)(node.x + 50, node.y) for node in (NODE,)]
+    write(folder / "far.timemap.mcap", [(0, all_levels(box=False))], far)
+    ran = timemap("check", "far.timemap.mcap", "--baseline", "b.yaml")
+    assert ran.code == 2
+    assert ran.err.startswith("error: nothing can be compared with b.yaml: they have no node in common\n")
+
+
+BOTH = ["plain.timemap.mcap", "box.timemap.mcap"]
+PLAIN = ["plain.timemap.mcap", "--baseline", "b.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["plain.timemap.mcap"], "--baseline is missing"),
+        (["--baseline", "b.yaml"], "no recording or result is named"),
+        (["plain.timemap.mcap", "--baseline", "no.yaml"], "there is no file no.yaml"),
+        (["no.mcap", "--baseline", "b.yaml"], "there is no file no.mcap"),
+        ([*BOTH, "--baseline", "b.yaml"], "plain.timemap.mcap is a result: it is checked alone"),
+        ([*PLAIN, "--format", "xml"], "unknown format xml"),
+        ([*PLAIN, "--format", "json", "--format", "github"], "standard output takes one format"),
+        ([*PLAIN, "--tolerance", "x=1"], "unknown tolerance x in --tolerance"),
+        ([*PLAIN, "--suite", "s.yaml"], "plain.timemap.mcap does not go with --suite: s.yaml says it for each"),
+        (["--suite", "s.yaml"], "no suite file s.yaml"),
+    ],
+)  # fmt: skip
+def test_a_call_that_cannot_be_carried_out_ends_with_2(folder, args, message):
+    ran = timemap("check", *args)
+    assert ran.code == 2
+    assert ran.err.startswith(f"error: {message}")
+
+
+SUITE = """
+tolerances: {scans.used: 0.5}
+checks:
+- {result: plain.timemap.mcap, baseline: b.yaml}
+- {name: box, result: box.timemap.mcap, baseline: b.yaml, tolerances: {settings.changed: 3}}
+- {name: gone, result: gone.timemap.mcap, baseline: b.yaml}
+"""
+
+
+def test_a_suite_runs_all_its_checks_whatever_becomes_of_one(folder):
+    sub = folder / "sub"
+    sub.mkdir()
+    (sub / "s.yaml").write_text(SUITE.replace(": b.yaml", ": ../b.yaml").replace("result: ", "result: ../"))
+    ran = timemap("check", "--suite", "sub/s.yaml", "--format", "json")
+    document = json.loads(ran.out)
+    assert ran.code == 4
+    assert [(one["name"], one["outcome"]) for one in document["checks"]] == [
+        ("b", "passed"),
+        ("box", "failed"),
+        ("gone", "error"),
+    ]
+    allowed = {one["name"]: one["allowed"] for one in document["checks"][1]["measures"]}
+    assert (allowed["scans.used"], allowed["settings.changed"]) == (0.5, 3)
+
+
+def test_a_suite_tells_the_same_with_any_number_of_jobs(folder):
+    (folder / "s.yaml").write_text(SUITE)
+    for form in ("text", "junit"):
+        one, two = (timemap("check", "--suite", "s.yaml", "--jobs", n, "--format", form) for n in (1, 2))
+        assert one == two
+
+
+def test_a_suite_writes_all_its_baselines_and_keeps_its_tolerances_to_itself(folder):
+    (folder / "s.yaml").write_text(
+        "tolerances: {scans.used: 0.5}\nchecks: [{result: box.timemap.mcap, baseline: new.yaml}]"
+    )
+    ran = timemap("check", "--suite", "s.yaml", "--update-baseline")
+    assert (ran.code, ran.out) == (0, "new.yaml: 1 node, 3 levels, 0 change events\n")
+    assert "\ntolerances: {}\n" in (folder / "new.yaml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("checks: []", "s.yaml lists no checks"),
+        ("cheks: []", "unknown key cheks in s.yaml"),
+        ("- a", "s.yaml holds no suite"),
+        ("checks: [a]", "checks[0] of s.yaml is no check"),
+        ("checks: [{logs: [a.mcap]}]", "checks[0] of s.yaml has no baseline"),
+        ("checks: [{baseline: b.yaml}]", "checks[0] of s.yaml needs logs or a result, one of the two"),
+        ("checks: [{logs: [3], baseline: b.yaml}]", "logs in checks[0] of s.yaml is no list of recordings"),
+        ("checks: [{log: [a], baseline: b.yaml}]", "unknown key log in checks[0] of s.yaml"),
+        (
+            "checks: [{logs: a, baseline: b.yaml, tolerances: {x: 1}}]",
+            "unknown tolerance x in checks[0] of s.yaml",
+        ),
+        (
+            "checks: [{logs: a, baseline: b.yaml}, {logs: c, baseline: b.yaml}]",
+            "two checks of s.yaml have the name b",
+        ),
+    ],
+)
+def test_a_suite_that_makes_no_sense_is_refused_at_its_place(folder, text, message):
+    (folder / "s.yaml").write_text(text)
+    ran = timemap("check", "--suite", "s.yaml")
+    assert ran.code == 2
+    assert ran.err.startswith(f"error: {message}")
+
+
+def test_a_recording_far_from_every_node_of_the_baseline_cannot_be_compared(folder):
+    far = [type(node)(node.x + 500, node.y) for node in (NODE,)]
+    write(folder / "far.timemap.mcap", [(0, all_levels(box=False))], far)
+    timemap("check", "far.timemap.mcap", "--baseline", "far.yaml", "--update-baseline")
+    ran = timemap("check", ROOT / "sample_logs/patrol_tuesday.bag", "--baseline", "far.yaml")
+    assert ran.code == 2
+    assert ran.err.startswith(
+        "error: nothing can be compared with far.yaml: no scan comes near one of its nodes\n"
+    )
+    assert sorted(path.name for path in folder.iterdir() if path.suffix == ".part") == []
+
+
+def test_help_needs_no_numpy():
+    done = python(
+        "import sys; from timemap_cli.cli.main import main; main(['check', '--help']); "
+        "assert 'numpy' not in sys.modules"
+    )
+    assert done.returncode == 0, done.stderr
