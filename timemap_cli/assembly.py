@@ -1,7 +1,7 @@
 """From settings to the parts of the model: the model knows no settings, and they know no model."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from timemap_cli.changes.tracker import Tracker
@@ -9,10 +9,10 @@ from timemap_cli.config import LevelSettings, Settings
 from timemap_cli.model.estimator import Estimator, estimate
 from timemap_cli.model.gate import Gate
 from timemap_cli.model.guard import Guard
-from timemap_cli.model.learner import Learner, Learnt
+from timemap_cli.model.learner import Answer, Asked, Kept, Learner
 from timemap_cli.model.levels import Level
 from timemap_cli.model.nodes import Node
-from timemap_cli.model.observer import Observations, Observer
+from timemap_cli.model.observer import Observer
 from timemap_cli.model.paper_profile import estimate_as_in_paper
 from timemap_cli.model.schedule import Period, Schedule
 from timemap_cli.model.time_map import TimeMap
@@ -30,14 +30,19 @@ def observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
     )
 
 
-def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations | None], Learnt]:
-    """What learns from observations, and has learnt nothing yet; given `nodes` are known from the start."""
+def learner(
+    settings: Settings, nodes: Sequence[Node], kept: Callable[[], Iterable[Kept]] | None = None
+) -> Callable[[Asked], Answer]:
+    """What learns from observations; given `nodes` are known from the start.
+
+    It has learnt nothing yet, or goes on from what another one `kept`, whose observer knew the nodes.
+    """
     time_map = TimeMap(
         levels(settings),
         _estimator(settings),
         angle_bins=settings.map.angle_bins,
         seed=settings.seed,
-        nodes=nodes,
+        nodes=nodes if kept is None else (),
     )
     guard = Guard(
         settings.gate.max_contradiction,
@@ -45,7 +50,10 @@ def learner(settings: Settings, nodes: Sequence[Node]) -> Callable[[Observations
         radius=settings.map.radius,
         window=settings.levels[-1].window,
     )
-    return Learner(time_map, guard, _schedule(settings)).take
+    learner = Learner(time_map, guard, _schedule(settings))
+    if kept is not None:
+        learner.restore(kept(), nodes)
+    return learner.take
 
 
 def tracker(settings: Settings) -> Tracker:

@@ -1,11 +1,12 @@
 """A recording or a result against its baseline: replaying where that is due, comparing, and writing baselines."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from timemap_cli import assembly
 from timemap_cli.checks import baseline_file
 from timemap_cli.checks.baseline_file import Baseline
 from timemap_cli.checks.compare import compare
@@ -13,13 +14,16 @@ from timemap_cli.checks.snapshot import Snapshot
 from timemap_cli.checks.taken import taken
 from timemap_cli.checks.tolerances import defaults
 from timemap_cli.checks.verdict import CheckedCase, Verdict
-from timemap_cli.config import load
+from timemap_cli.config import Settings, load
 from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.logs.recordings import open_recordings
+from timemap_cli.logs.survey import survey
 from timemap_cli.model.nodes import Node
-from timemap_cli.replay import Progress, ReplaySummary, lay_nodes, replay
+from timemap_cli.replay import Progress, ReplaySummary, replay
 from timemap_cli.results.atomic_file import AtomicFile
 from timemap_cli.results.container import is_result
 from timemap_cli.results.reader import ResultReader
+from timemap_cli.stages import Observing
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,23 +51,29 @@ class Updated:
     warnings: tuple[str, ...]
 
 
-def check(one: Check, progress: Progress | None = None) -> CheckedCase:
+def check(
+    one: Check,
+    progress: Progress | None = None,
+    look: Callable[[ResultReader, Snapshot, Verdict], None] | None = None,
+) -> CheckedCase:
     """Compare with the baseline; recordings are replayed with the baseline's nodes.
+
+    `look` is called with the result, what was expected and the verdict, while the result is there.
 
     Raises UsageError where there is no baseline or nothing can be compared, and what a replay raises.
     """
     baseline = baseline_file.read(one.baseline)
-    with _result(one, baseline.expected.nodes, progress) as (result, summary):
-        with ResultReader(result) as reader:
-            found = taken(reader)
+    with _result(one, baseline.expected.nodes, progress) as (result, summary), ResultReader(result) as reader:
         verdict = compare(
             baseline.expected,
-            found,
+            taken(reader),
             {**defaults(), **baseline.tolerances, **one.tolerances},
             name=one.name,
             baseline=str(one.baseline),
             exact=one.exact,
         )
+        if look is not None:
+            look(reader, baseline.expected, verdict)
     lost, warnings = _trouble(summary)
     return CheckedCase(one.name, str(one.baseline), verdict, lost=lost, warnings=warnings)
 
@@ -132,7 +142,7 @@ def _replayed(
 ) -> Iterator[tuple[Path, ReplaySummary]]:
     settings = load(one.config)
     given = folder / "nodes"
-    lines = [f"{node.x}, {node.y}\n" for node in nodes or lay_nodes(one.sources, settings)]
+    lines = [f"{node.x}, {node.y}\n" for node in nodes or _laid(one.sources, settings)]
     given.write_text("".join(lines), encoding="utf-8")
     output = one.output or folder / "checked.timemap.mcap"
     try:
@@ -145,6 +155,16 @@ def _replayed(
             hint=f"timemap info {one.sources[0]}",
         ) from error
     yield output, summary
+
+
+def _laid(logs: Sequence[Path], settings: Settings) -> Sequence[Node]:
+    """The nodes that a replay of the recordings would make, without learning anything."""
+    with ExitStack() as stack:
+        recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
+        observing = Observing(recordings, survey(recordings, settings), assembly.observer(settings, ()))
+        for _ in observing.steps(None, None):
+            pass
+        return tuple(observing.nodes)
 
 
 def _trouble(summary: ReplaySummary | None) -> tuple[bool, tuple[str, ...]]:

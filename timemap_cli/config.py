@@ -117,15 +117,27 @@ class Settings:
     profile: str = setting("default", OneOf(PROFILES), "paper: the method and the numbers of the paper")
 
 
-def load(path: Path | None, overrides: Mapping[str, Any] | None = None) -> Settings:
+def load(
+    path: Path | None, overrides: Mapping[str, Any] | None = None, base: Settings | None = None
+) -> Settings:
     """Settings from the defaults, a YAML file and overrides; what comes later wins.
 
     `overrides` has the shape of the file: `{"input": {"map_frame": "world"}}`. `profile` chooses the defaults
-    below both. UsageError names the setting and, for an unknown key, the nearest known one.
+    below both, unless a `base` takes their place. UsageError names the setting and, for an unknown key, the
+    nearest known one.
     """
     layers = [(str(path), read_yaml(path))] if path is not None else []
     layers.append(("the options", dict(overrides or {})))
-    settings = _defaults(_profile(layers))
+    return _layered(layers, base)
+
+
+def loads(text: str, place: str) -> Settings:
+    """Settings from the text of a YAML file, as `dump` writes it; `place` is what errors call it."""
+    return _layered([(place, _parsed(text, place))], None)
+
+
+def _layered(layers: list[tuple[str, Mapping[str, Any]]], base: Settings | None) -> Settings:
+    settings = base or _defaults(_profile(layers))
     for place, values in layers:
         settings = _updated(settings, values, place)
     _check_levels(settings.levels)
@@ -153,10 +165,6 @@ def settings_hash(settings: Settings) -> str:
 
 def read_yaml(path: Path, what: str = "settings", hint: str = _SHOWN) -> Mapping[str, Any]:
     """A file of settings, or of something else, as nested mappings; UsageError where it is missing or not YAML."""
-    # YAML is slow to import and most runs have no settings file.
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
@@ -167,14 +175,22 @@ def read_yaml(path: Path, what: str = "settings", hint: str = _SHOWN) -> Mapping
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror or str(error)).lower() if isinstance(error, OSError) else "it is not a text"
         raise UsageError(f"cannot read the {what} file {path}: {reason}", hint=hint) from error
+    return _parsed(text, str(path), what, hint)
+
+
+def _parsed(text: str, place: str, what: str = "settings", hint: str = _SHOWN) -> Mapping[str, Any]:
+    # YAML is slow to import and most runs have no settings file.
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
     try:
         values = YAML(typ="safe", pure=True).load(text)
     except (YAMLError, ValueError) as error:
-        raise UsageError(f"{path} is not YAML: {_yaml_trouble(error)}", hint=hint) from error
+        raise UsageError(f"{place} is not YAML: {_yaml_trouble(error)}", hint=hint) from error
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise UsageError(f"{path} holds no {what}", hint=hint)
+        raise UsageError(f"{place} holds no {what}", hint=hint)
     return values
 
 

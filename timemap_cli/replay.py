@@ -16,11 +16,12 @@ from timemap_cli.logs.beams import BeamCounts
 from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
-from timemap_cli.model.nodes import Node
+from timemap_cli.model.learner import Kept
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
 from timemap_cli.results.writer import VIEWERS_SPAN_NS, ResultWriter
+from timemap_cli.resuming import Earlier
 from timemap_cli.second_process import mapped
 from timemap_cli.stages import Observing, Writing
 from timemap_cli.times import format_time, parse_time
@@ -60,44 +61,63 @@ def replay(
     nodes: Path | None = None,
     start: str | None = None,
     end: str | None = None,
+    resume: Path | None = None,
     progress: Progress | None = None,
 ) -> ReplaySummary:
     """Replay recordings in time order through a map of nodes that remember, into a result file.
 
-    `nodes` gives all nodes there will be; `start` (closed) and `end` (open) cut by the scans' stamps. An existing
-    `output` is replaced only with `force`, and only when the new one is complete. Raises TimemapError.
+    `nodes` gives all nodes there will be; `start` (closed) and `end` (open) cut by the scans' stamps; `resume` is a
+    result of earlier recordings, to go on from with the same settings: the map becomes what it would be if all were
+    replayed in one go. An existing `output` is replaced only with `force`, and only when the new one is complete.
+    Raises TimemapError.
     """
     began = time.perf_counter()
     with ExitStack() as stack:
+        earlier = _earlier(resume, settings)
         recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
-        plan = survey(recordings, settings)
+        plan = _surveyed(recordings, settings, earlier)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        observing = Observing(recordings, plan, assembly.observer(settings, given))
+        observer, tracker = assembly.observer(settings, given), assembly.tracker(settings)
+        observing = Observing(recordings, plan, observer, earlier.reading if earlier else None)
+        writing = Writing(result, tracker)
         learning = partial(assembly.learner, settings, given)
-        writing = Writing(result, assembly.tracker(settings))
-        steps = observing.steps(*_span_ns(plan, start, end))
-        for learnt in stack.enter_context(closing(mapped(learning, steps))):
-            observing.set_aside(learnt.lost)
-            writing.take(learnt, observing.nodes)
+        if earlier is not None:
+            writing.restore(earlier.parts(), observer.nodes)
+            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
+        start_ns, end_ns = _span_ns(plan, start, end)
+        if earlier is not None:
+            earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+        steps = observing.steps(start_ns, end_ns)
+        for answer in stack.enter_context(closing(mapped(learning, steps))):
+            if isinstance(answer, Kept):
+                writing.keep(answer, observing.state)
+                continue
+            if writing.is_new:
+                observing.set_aside(answer.lost)
+            writing.take(answer, observing.nodes)
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
         summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
         _require_some_use(summary, plan, start=start, end=end, nodes=nodes)
-        metadata = _metadata(settings, recordings, summary)
+        metadata = _metadata(settings, recordings, summary, resume)
         changes = changes_document(writing.tracker.events, observing.newest_ns)
         result.finish(metadata, dump(settings), _report(plan, summary), changes)
     return summary
 
 
-def lay_nodes(logs: Sequence[Path], settings: Settings) -> Sequence[Node]:
-    """The nodes that a replay of the recordings would make, without learning anything."""
-    with ExitStack() as stack:
-        recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
-        observing = Observing(recordings, survey(recordings, settings), assembly.observer(settings, ()))
-        for _ in observing.steps(None, None):
-            pass
-        return tuple(observing.nodes)
+def _earlier(resume: Path | None, settings: Settings) -> Earlier | None:
+    if resume is None:
+        return None
+    earlier = Earlier.of(resume)
+    earlier.require_same(settings)
+    return earlier
+
+
+def _surveyed(recordings: Sequence[Recording], settings: Settings, earlier: Earlier | None) -> Survey:
+    if earlier is None:
+        return survey(recordings, settings)
+    return survey(recordings, earlier.settings_to_read_by(), earlier.known)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
@@ -214,17 +234,24 @@ def _shares(counts: BeamCounts) -> dict[str, float]:
     return {kind: round(count / max(1, counts.total), 4) for kind, count in asdict(counts).items()}
 
 
-def _metadata(settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary) -> dict[str, str]:
+def _metadata(
+    settings: Settings, recordings: Sequence[Recording], summary: ReplaySummary, resume: Path | None
+) -> dict[str, str]:
     """What the result's metadata record says of where it comes from."""
-    inputs = [{"name": recording.path.name, "sha256": sha256(recording.path)} for recording in recordings]
+    earlier = {} if resume is None else {"resumed_from": json.dumps(_fingerprint(resume))}
     return {
-        "inputs": json.dumps(inputs),
+        "inputs": json.dumps([_fingerprint(recording.path) for recording in recordings]),
+        **earlier,
         "settings_sha256": settings_hash(settings),
         "seed": str(settings.seed),
         "scans_read": str(summary.scans_read),
         "scans_used": str(summary.scans_used),
         "scans_dropped": json.dumps(summary.dropped),
     }
+
+
+def _fingerprint(path: Path) -> dict[str, str]:
+    return {"name": path.name, "sha256": sha256(path)}
 
 
 def _report(plan: Survey, summary: ReplaySummary) -> dict[str, Any]:

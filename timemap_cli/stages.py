@@ -1,30 +1,58 @@
 """The two ends of a replay: scans become what the nodes see, and what was learnt of it is written."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import astuple
+
+import numpy as np
+import numpy.typing as npt
 
 from timemap_cli.changes.tracker import Tracker
 from timemap_cli.logs.recordings import Recording
-from timemap_cli.logs.stream import LEAST_SCANS, EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.stream import (
+    LEAST_SCANS,
+    Coming,
+    EndOfRecording,
+    Resumed,
+    ScanCounts,
+    Waiting,
+    sweeps,
+)
 from timemap_cli.logs.survey import Survey
 from timemap_cli.model.estimates import Estimate
-from timemap_cli.model.learner import Learnt, Round
+from timemap_cli.model.learner import Asked, Keep, Kept, Learnt, Mark, Round
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer, gathered
+from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
+from timemap_cli.results.state_messages import Part, StatePart
 from timemap_cli.results.writer import ResultWriter
+
+Ints = npt.NDArray[np.int64]
 
 
 class Observing:
     """Reads the recordings and turns their scans into what the nodes see; counts what becomes of every scan."""
 
-    def __init__(self, recordings: Sequence[Recording], plan: Survey, observer: Observer) -> None:
+    def __init__(
+        self,
+        recordings: Sequence[Recording],
+        plan: Survey,
+        observer: Observer,
+        earlier: State | None = None,
+    ) -> None:
+        """`earlier` is the `state` of a replay that stopped where this one begins."""
         self.counts = ScanCounts()
         self.used = 0
         self.newest_ns: int | None = None
         self.began_anew = False  # stamps went back from one recording to the next
+        self.state: State = {}  # what a later replay needs, once `steps` asks the memory for its part
         self._recordings = recordings
         self._plan = plan
         self._observer = observer
+        self._earlier = earlier
+        if earlier is not None:
+            self.newest_ns = earlier["newest_ns"]
+            observer.restore(without_prefix("observer", earlier))
 
     @property
     def nodes(self) -> Sequence[Node]:
@@ -46,8 +74,11 @@ class Observing:
         self.used -= scans
         self.counts.drop("lost", scans)
 
-    def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Observations | None]:
-        """Blocks of observations in stamp order; None where a recording has ended."""
+    def steps(self, start_ns: int | None, end_ns: int | None) -> Iterator[Asked]:
+        """Blocks of observations in stamp order, and what comes between them.
+
+        At the end of all recordings, before what waits to the last, the memory is asked for all that it holds.
+        """
         plan, counts = self._plan, self.counts
         blocks = sweeps(
             self._recordings,
@@ -57,20 +88,44 @@ class Observing:
             start_ns=start_ns,
             end_ns=end_ns,
             drives=plan.drives,
+            earlier=None if self._earlier is None else without_prefix("stream", self._earlier),
         )
         # Two scanners in turn, or bearings that differ from scan to scan, make blocks of one scan.
         waiting: list[Observations] = []
         for block in blocks:
-            is_end = isinstance(block, EndOfRecording)
-            if not isinstance(block, EndOfRecording):
+            between = not isinstance(block, Sweeps)
+            if isinstance(block, Sweeps):
                 waiting.append(self._observed(block))
-            if waiting and (is_end or sum(map(len, waiting)) >= LEAST_SCANS):
+            if waiting and (between or sum(map(len, waiting)) >= LEAST_SCANS):
                 yield gathered(waiting)
                 waiting = []
-            if is_end:
-                yield None
+            yield from self._between(block)
         if waiting:
             yield gathered(waiting)
+
+    def _between(self, block: Coming) -> Iterator[Asked]:
+        """What is to be done for what comes between the blocks of scans."""
+        if isinstance(block, EndOfRecording):
+            yield Mark.RECORDING_ENDS
+        elif isinstance(block, Resumed):
+            self.used = self.counts.read = 0  # the earlier replay has counted them
+            self.counts.dropped.clear()
+            yield Mark.RESUMED
+        elif isinstance(block, Waiting):
+            self.state = self._kept() | prefixed("stream", block.state)
+            yield Keep(None)
+            yield from map(Keep, range(len(self.nodes)))
+
+    def _kept(self) -> State:
+        chosen = self._plan.selection
+        selection = {"scan_topics": chosen.scan_topics, "map_frame": chosen.map_frame, "poses": chosen.pose}
+        observer = prefixed("observer", self._observer.kept())
+        return {
+            "newest_ns": self.newest_ns,
+            "selection": selection,
+            "missing_so_far": {topic: astuple(found) for topic, found in self._plan.missing_so_far.items()},
+            **observer,
+        }
 
     def _observed(self, block: Sweeps) -> Observations:
         seen = self._observer.observe(block)
@@ -95,30 +150,100 @@ class Writing:
         self.shortfalls: Mapping[str, float] = {}
         self._result = result
         self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in tracker.levels}
-        self._newest_ns = 0
+        self._newest_ns = self._kept_ns = 0
         self._maps_are_due = False
+        self._is_new = True  # what comes; else an earlier result has it
+        self._is_known_to_all = True  # what an earlier result had stands in this one
 
     @property
     def span_ns(self) -> int:
         """Time that the result spans so far."""
         return self._result.span_ns
 
+    @property
+    def is_new(self) -> bool:
+        """Whether what comes is of the recordings, not what an earlier replay has written."""
+        return self._is_new
+
+    def restore(self, parts: Iterable[StatePart], nodes: Sequence[Node]) -> None:
+        """Go on from what an earlier replay kept; `nodes` are the observer's."""
+        for kept in parts:
+            if kept.part is Part.NODE:
+                self._restore_node(kept)
+            elif kept.part is Part.CHANGES:
+                self._maps_are_due, known = kept.state["maps_are_due"], kept.state["nodes"]
+                self.nodes, self._newest_ns = nodes[:known], kept.state["newest_ns"]
+                self.tracker.restore(without_prefix("tracker", kept.state))
+        self._is_new = self._is_known_to_all = False
+
     def take(self, learnt: Learnt, all_nodes: Sequence[Node]) -> None:
         """Write what came of one step; `all_nodes` holds at least those that it speaks of."""
         self.shortfalls = learnt.shortfalls
         for made in learnt.rounds:
-            self._write(made, all_nodes[: made.nodes])
-        if learnt.ends_recording and self._maps_are_due:  # recordings may end together
-            self._result.write_maps(self._latest, self.nodes, self._newest_ns)
+            self._follow(made, all_nodes[: made.nodes])
+        if learnt.mark is Mark.RECORDING_ENDS and self._maps_are_due:  # recordings may end together
+            if self._is_new:
+                self._result.write_maps(self._latest, self.nodes, self._newest_ns)
             self._maps_are_due = False
+        self._is_new |= learnt.mark is Mark.RESUMED
 
-    def _write(self, made: Round, nodes: Sequence[Node]) -> None:
-        self.nodes, self._newest_ns = nodes, made.newest_ns
-        self._result.write_nodes(nodes, made.newest_ns)
-        self._result.write_estimates(made.estimates, made.newest_ns)
+    def keep(self, kept: Kept, reading: State) -> None:
+        """Write a part of what a later replay needs; the first one brings the `reading` side's along."""
+        if kept.node is None:
+            self._kept_ns = self._time_of_state(reading["stream.window.stamp"])
+            changes = {
+                "maps_are_due": self._maps_are_due,
+                "nodes": len(self.nodes),
+                "newest_ns": self._newest_ns,
+            }
+            changes |= prefixed("tracker", self.tracker.kept())
+            self._keep(Part.READING, reading)
+            self._keep(Part.LEARNING, kept.state)
+            self._keep(Part.CHANGES, changes)
+        else:
+            self._keep(Part.NODE, kept.state | self._kept_of(kept.node), kept.node)
+
+    def _time_of_state(self, waiting_ns: Ints) -> int:
+        """When the state is logged: not before what is new, lest a result span the time between two replays."""
+        if self._is_known_to_all and self._newest_ns:
+            return self._newest_ns
+        return int(waiting_ns.min()) if len(waiting_ns) else self._newest_ns
+
+    def _keep(self, part: Part, state: State, node: int = 0) -> None:
+        self._result.write_state(StatePart(part, node, state), self._kept_ns)
+
+    def _kept_of(self, node: int) -> State:
+        state = prefixed("before", self.tracker.kept_before(node))
+        for level, latest in self._latest.items():
+            if node in latest:
+                state |= prefixed(f"latest.{level}", latest[node].kept())
+        return state
+
+    def _restore_node(self, kept: StatePart) -> None:
+        self.tracker.restore_before(kept.node, without_prefix("before", kept.state))
+        for level, latest in self._latest.items():
+            if state := without_prefix(f"latest.{level}", kept.state):
+                latest[kept.node] = Estimate.restored(kept.node, level, state)
+
+    def _follow(self, made: Round, nodes: Sequence[Node]) -> None:
+        self.nodes = nodes
+        if made.estimates:
+            self._newest_ns = made.newest_ns
+        if self._is_new:
+            self._write(made)
         for estimate in made.estimates:
             self._latest[estimate.level][estimate.node] = estimate
             self._maps_are_due = True
         found = self.tracker.update(nodes, self._latest, made.estimates)
-        if found:
+        if found and self._is_new:
             self._result.write_changes(found, self.tracker.events, made.newest_ns)
+
+    def _write(self, made: Round) -> None:
+        if not self._is_known_to_all:
+            known = [estimate for latest in self._latest.values() for estimate in latest.values()]
+            self._result.write_known(self.nodes, known, made.newest_ns)
+            if self.tracker.events:
+                self._result.write_changes([], self.tracker.events, made.newest_ns)
+            self._is_known_to_all = True
+        self._result.write_nodes(self.nodes, made.newest_ns)
+        self._result.write_estimates(made.estimates, made.newest_ns)

@@ -12,11 +12,12 @@ from benchmarks.paper.definitions import Definition
 from timemap_cli import assembly
 from timemap_cli.config import Settings
 from timemap_cli.logs.recordings import open_recordings
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.stream import ScanCounts, sweeps
 from timemap_cli.logs.survey import survey
 from timemap_cli.model.levels import Level
 from timemap_cli.model.memory import Memory
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
 
 Ints = npt.NDArray[np.int64]
@@ -49,7 +50,7 @@ def recorded(logs: Sequence[Path], settings: Settings) -> Recorded:
         plan = survey(recordings, settings)
         observer = assembly.observer(settings, ())
         blocks = sweeps(recordings, plan.selection, plan.beams, ScanCounts(), start_ns=None, end_ns=None)
-        seen = [observer.observe(block) for block in blocks if not isinstance(block, EndOfRecording)]
+        seen = [observer.observe(block) for block in blocks if isinstance(block, Sweeps)]
     return Recorded(
         np.concatenate([part.nodes for part in seen]),
         np.concatenate([part.stamps_ns for part in seen]),

@@ -33,10 +33,10 @@ def test_info_follows_the_settings_file(tmp_path):
     assert log["selected"]["map_frame"] == "odom"
 
 
-def test_info_on_a_missing_file_or_a_result_is_a_usage_error(tmp_path):
+def test_info_on_a_missing_file_or_a_result_beside_a_recording_is_a_usage_error(tmp_path):
     ran = timemap("info", tmp_path / "absent.bag")
     assert (ran.code, ran.out) == (2, "")
     assert "absent.bag" in ran.err
-    ran = timemap("info", written(tmp_path / "r.timemap.mcap"))
+    ran = timemap("info", written(tmp_path / "r.timemap.mcap"), LOGS[0])
     assert (ran.code, ran.out) == (2, "")
     assert "result" in ran.err

@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 
+from tests.cli.program import timemap
 from tests.cli.result_files import all_levels, write
 from tests.reports.pages import APPEARED, GONE_AGAIN, HOSTILE, REPORT, write_page_result
 from timemap_cli.reports.page import page
@@ -203,3 +204,38 @@ def test_a_page_without_changes_says_so(driver, tmp_path):
     assert element(opened, "#events tbody").text == "No change was found."
     assert not element(opened, "#line-box").is_displayed()
     assert [line for line in opened.get_log("browser") if line["level"] == "SEVERE"] == []
+
+
+@pytest.fixture(scope="module")
+def checked_address(tmp_path_factory):
+    """Address of the page of a result with a box that its baseline does not have."""
+    folder = tmp_path_factory.mktemp("checked")
+    write(folder / "plain.timemap.mcap", [(0, all_levels(box=False))], report=REPORT)
+    write(folder / "box.timemap.mcap", [(0, all_levels(box=True))], report=REPORT)
+    to, html = ("--baseline", folder / "b.yaml"), folder / "box.html"
+    timemap("check", folder / "plain.timemap.mcap", *to, "--update-baseline")
+    assert timemap("check", folder / "box.timemap.mcap", *to, "--html", html).code == 4
+    return html.as_uri()
+
+
+def test_a_checked_result_shows_the_baseline_beside_it(driver, checked_address):
+    opened = open_page(driver, checked_address)
+    assert "b.yaml: failed, " in opened.find_element("id", "check-title").text
+    drawn = "return document.getElementById('plan').data.find((one) => one.name === 'baseline')"
+    assert opened.execute_script(f"{drawn}.x.length") == 360  # the long level is ticked, at one node
+    assert opened.execute_script(f"{drawn}.visible") is True
+    opened.find_element("id", "baseline").click()
+    assert opened.execute_script(f"{drawn}.visible") is False
+    assert [one for one in opened.get_log("browser") if one["level"] == "SEVERE"] == []
+
+
+def test_a_place_out_of_tolerance_is_gone_to(driver, checked_address):
+    opened = open_page(driver, checked_address)
+    width = "const [low, high] = document.getElementById('plan').layout.xaxis.range; return high - low"
+    whole = opened.execute_script(width)
+    opened.find_element("css selector", "#failures tr.placed").click()
+    assert opened.execute_script(width) < whole / 2
+
+
+def test_a_result_that_was_not_checked_shows_no_check(opened):
+    assert not opened.find_element("id", "check-box").is_displayed()

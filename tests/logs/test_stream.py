@@ -9,7 +9,7 @@ from timemap_cli.logs import stream
 from timemap_cli.logs.batches import BadBatch
 from timemap_cli.logs.beams import Beams
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.stream import EndOfRecording, ScanCounts, Waiting, sweeps
 
 BEAMS = Beams(0.1, 30.0, False, 30.0, True, ())
 MOUNT = tf("base", "laser", [0], [[0.5, 0, 0]], static=True)
@@ -24,7 +24,8 @@ def driving(start, stop, step=0.5):
 def replayed(*recordings, topics=("/scan",), pose="tf", map_frame="map", beams=BEAMS, **span):
     counts = ScanCounts()
     every = {(index, topic): beams for index in range(len(recordings)) for topic in topics}
-    out = list(sweeps(recordings, Selection(topics, map_frame, pose), every, counts, **span))
+    came = sweeps(recordings, Selection(topics, map_frame, pose), every, counts, **span)
+    out = [one for one in came if not isinstance(one, Waiting)]
     dropped = sum(counts.dropped.values())
     assert counts.read == dropped + sum(len(block) for block in out if not isinstance(block, EndOfRecording))
     return out, counts

@@ -11,7 +11,7 @@ from timemap_cli.logs import rigid
 from timemap_cli.logs.beams import Beams
 from timemap_cli.logs.recordings import open_recordings
 from timemap_cli.logs.selection import Selection
-from timemap_cli.logs.stream import EndOfRecording, ScanCounts, sweeps
+from timemap_cli.logs.stream import EndOfRecording, ScanCounts, Waiting, sweeps
 
 BEAMS = Beams(0.02, 79.0, False, 79.0, True, ())
 
@@ -22,7 +22,8 @@ def replayed(*names, topic="/scan", frame="map", pose="tf"):
     with ExitStack() as stack:
         recordings = [stack.enter_context(recording) for recording in open_recordings(paths)]
         beams = {(index, topic): BEAMS for index in range(len(recordings))}
-        return list(sweeps(recordings, Selection((topic,), frame, pose), beams, counts)), counts
+        came = sweeps(recordings, Selection((topic,), frame, pose), beams, counts)
+        return [one for one in came if not isinstance(one, Waiting)], counts
 
 
 def joined(out, name):

@@ -42,7 +42,8 @@ INTEL = Inspection(
     trouble=None,
     span_ns=(976_052_889_859_000_111, 976_055_540_700_000_000),
     chains=(("map", "base_link", "laser"),),
-    missing_returns={"/scan": MissingReturns(4172, 0.67)},
+    missing_returns={(0, "/scan"): MissingReturns(4172, 0.67)},
+    missing_are_clear={(0, "/scan"): False},
     no_return="ignore",
     problems=("b.mcap has no scans of /scan",),
 )
@@ -53,6 +54,7 @@ STUCK = replace(
     span_ns=None,
     chains=(),
     missing_returns={},
+    missing_are_clear={},
     no_return=None,
     problems=(),
 )

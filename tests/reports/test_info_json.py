@@ -36,7 +36,7 @@ def test_the_fields_that_programs_read():
     assert found["problems"] == ["odometry drifts", "b.mcap has no scans of /scan"]
     assert found["span_ns"] == ["976052889859000111", "976055540700000000"]
     assert found["no_return"] == "ignore"
-    assert found["missing_returns"] == {"/scan": {"tested": 4172, "contradicted": 0.67}}
+    assert log["missing_returns"] == {"/scan": {"tested": 4172, "contradicted": 0.67, "are_clear": False}}
 
 
 def test_without_a_selection_the_reason_is_among_the_problems():

@@ -70,9 +70,22 @@ def test_it_says_why_a_replay_would_stop_and_what_to_try():
     ],
 )
 def test_what_missing_returns_count_as(found, no_return, text):
-    tests = {"/scan": found} if found else {}
-    told = info_text(replace(INTEL, missing_returns=tests, no_return=no_return))
-    assert f"  no return  {text}\n" in told
+    tests = {(0, "/scan"): found} if found else {}
+    are_clear = {(0, "/scan"): no_return == "clear"}
+    inspection = replace(INTEL, missing_returns=tests, missing_are_clear=are_clear, no_return=no_return)
+    assert f"  no return  {text}\n" in info_text(inspection)
+
+
+def test_of_several_recordings_each_says_what_its_missing_returns_count_as():
+    tests = {(0, "/scan"): MissingReturns(900, 0.67), (1, "/scan"): MissingReturns(90, 0.22)}
+    are_clear = dict.fromkeys(tests, False)
+    logs = (LOG, replace(LOG, path="later.mcap"))
+    told = info_text(replace(INTEL, logs=logs, missing_returns=tests, missing_are_clear=are_clear))
+    assert "  no return  intel.mcap: no evidence: 67 % of those sampled pass" in told
+    assert (
+        "  no return  later.mcap: no evidence: 22 % of those sampled pass through something solid, "
+        "but others of the recordings before it\n"
+    ) in told
 
 
 def test_small_shares_are_not_rounded_to_nothing_nor_large_ones_to_all():

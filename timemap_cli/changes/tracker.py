@@ -22,6 +22,7 @@ from timemap_cli.changes.track import Track, side_of
 from timemap_cli.changes.view import View
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.state import State
 
 Estimates = Mapping[str, Mapping[int, Estimate]]  # newest of each level and node
 _DEFAULT = Rules()
@@ -44,6 +45,25 @@ class Tracker:
         """All events reported so far, in the order in which they were."""
         found = [track.event() for track in self._tracks if track.id is not None]
         return tuple(sorted(found, key=lambda event: event.id))
+
+    def kept(self) -> State:
+        """What is watched, for `restore`; what the slowest level held before goes with the nodes."""
+        return {"reported": self._reported, "tracks": [track.kept() for track in self._tracks]}
+
+    def kept_before(self, node: int) -> State:
+        """What the slowest level held of a node in an earlier round, for `restore_before`."""
+        before = self._before.get(node)
+        return before.kept() if before is not None else {}
+
+    def restore(self, state: State) -> None:
+        """Go on watching what another tracker kept."""
+        self._reported = state["reported"]
+        self._tracks = [Track.restored(one) for one in state["tracks"]]
+
+    def restore_before(self, node: int, state: State) -> None:
+        """Take over what another tracker kept of a node."""
+        if state:
+            self._before[node] = Estimate.restored(node, self.levels[-1], state)
 
     def update(
         self, nodes: Sequence[Node], newest: Estimates, renewed: Sequence[Estimate]
@@ -91,7 +111,7 @@ class Tracker:
             for other in [t for t in same if t is not track and overlap(t.points, track.points) > 0.5]:
                 dropped += self._drop(other)
         elif not self._is_told(change):
-            self._tracks.append(Track(change, self.levels))
+            self._tracks.append(Track.of(change, self.levels))
         return dropped
 
     def _is_told(self, change: Change) -> bool:

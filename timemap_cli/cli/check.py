@@ -1,12 +1,12 @@
 """`timemap check`: a recording or a result against its baseline."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from timemap_cli.cli.chosen import title_of
+from timemap_cli.cli.chosen import HTML, begins_with, title_of
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.progress import ProgressBar
 from timemap_cli.cli.terminal import Terminal
@@ -14,7 +14,9 @@ from timemap_cli.errors import ExitCode, UsageError
 
 if TYPE_CHECKING:
     from timemap_cli.checking import Check, Updated
-    from timemap_cli.checks.verdict import CheckedCase
+    from timemap_cli.checks.snapshot import Snapshot
+    from timemap_cli.checks.verdict import CheckedCase, Verdict
+    from timemap_cli.results.reader import ResultReader
 
 _FORMATS = ("text", "json", "junit", "github", "markdown")
 _USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite regression.yaml"
@@ -28,7 +30,7 @@ _USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite re
 @click.option("--jobs", type=click.IntRange(1), default=1, metavar="N", help="Checks of a suite at a time.")
 @click.option("--config", type=NAMED_PATH, metavar="FILE", help="Settings of the replay.")
 @click.option("-o", "--output", type=NAMED_PATH, metavar="OUT.mcap", help="Keep the result of the replay.")
-@click.option("--force", is_flag=True, help="Replace an existing result.")
+@click.option("--force", is_flag=True, help="Replace an existing result or page.")
 @click.option(
     "--tolerance",
     "tolerances",
@@ -44,6 +46,7 @@ _USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite re
     metavar="FORMAT[=FILE]",
     help="text, json, junit, github or markdown, to a file if one is named; may be repeated. [default: text]",
 )
+@click.option("--html", type=NAMED_PATH, metavar="FILE", help="Also write a page with baseline and result.")
 @click.pass_obj
 def check(
     terminal: Terminal,
@@ -56,6 +59,7 @@ def check(
     formats: tuple[str, ...],
     tolerances: tuple[str, ...],
     exact: bool,
+    html: Path | None,
     **replaying: Any,
 ) -> ExitCode:
     """Tell whether RESULT, or what a replay of LOG... gives, is still what its baseline says.
@@ -73,7 +77,7 @@ def check(
 
     wanted, limits = _wanted(formats), parsed(tolerances)
     if suite is not None:
-        _require_alone(suite, sources, baseline, replaying)
+        _require_alone(suite, sources, baseline, {**replaying, "html": html})
         from timemap_cli import suite as suites
 
         checks = suites.read_suite(suite, limits, exact=exact)
@@ -87,7 +91,7 @@ def check(
         with ProgressBar(terminal) as progress:
             if updates:
                 return _tell_updated(terminal, [checking.update(one, progress)])
-            cases = [checking.check(one, progress)]
+            cases = [checking.check(one, progress, _page_writer(html, one) if html else None)]
     _tell(terminal, cases, wanted)
     return exit_code_of(cases)
 
@@ -106,6 +110,23 @@ def _check(
 
     name = title_of(sources[0])
     return Check(sources, baseline, name, tolerances=tolerances, exact=exact, **replaying)
+
+
+def _page_writer(page: Path, one: "Check") -> "Callable[[ResultReader, Snapshot, Verdict], None]":
+    """Writes the page of a result that is checked, with its baseline in it."""
+
+    def write(reader: "ResultReader", expected: "Snapshot", verdict: "Verdict") -> None:
+        from timemap_cli.reports.page import page as page_text
+        from timemap_cli.reports.page_check import check_data
+        from timemap_cli.reports.page_data import page_data
+        from timemap_cli.results.atomic_file import AtomicFile
+
+        with AtomicFile(page, force=one.force, may_replace=begins_with(HTML), replaced="a page") as file:
+            data = page_data(reader) | {"check": check_data(expected, verdict)}
+            file.write(page_text(one.name, data).encode())
+            file.commit()
+
+    return write
 
 
 def _require_alone(

@@ -5,6 +5,8 @@ from pathlib import Path
 
 from timemap_cli.cli.terminal import Terminal
 
+HTML = b"<!doctype html>"  # begins a page of ours
+
 
 def chosen_result(terminal: Terminal, result: Path | None) -> Path:
     """The result that was named, else the newest of the current folder, which is told on stderr."""

@@ -9,7 +9,7 @@ import click
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.progress import ProgressBar
 from timemap_cli.cli.terminal import Terminal
-from timemap_cli.config import PROFILES, load
+from timemap_cli.config import PROFILES, Settings, load
 from timemap_cli.errors import ExitCode, UsageError
 
 if TYPE_CHECKING:
@@ -48,6 +48,12 @@ _SUFFIXES = (".mcap", ".bag", ".db3", ".zstd")
 @click.option(
     "--nodes", type=NAMED_PATH, metavar="FILE", help="Use these nodes: an earlier result, or a list of x y."
 )
+@click.option(
+    "--resume",
+    type=NAMED_PATH,
+    metavar="RESULT",
+    help="Go on from an earlier result, with its settings.",
+)
 @click.option("--seed", type=int, metavar="N", help="Another seed draws other samples.")
 @click.option("--profile", type=click.Choice(PROFILES), help="Defaults below the settings file.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON (schema timemap.replay/1).")
@@ -63,6 +69,7 @@ def replay(
     start: str | None,
     end: str | None,
     nodes: Path | None,
+    resume: Path | None,
     as_json: bool,
     quiet: bool,
     **flags: Any,
@@ -74,15 +81,29 @@ def replay(
 
     Exit code 3: done, but data was lost (a recording is cut off, or too many scans had to be dropped).
     """
-    settings = load(config_file, _overrides(**flags))
     result = output or default_output(logs[0])
-    _refuse_own_input(result, {"recording": logs, "settings file": [config_file], "nodes": [nodes]})
+    inputs = {
+        "recording": logs,
+        "settings file": [config_file],
+        "nodes": [nodes],
+        "earlier result": [resume],
+    }
+    _refuse_own_input(result, inputs)
+    settings = load(config_file, _overrides(**flags), _earlier_settings(resume, nodes))
 
     from timemap_cli import replay as replaying
 
     with ProgressBar(terminal, quiet=quiet) as progress:
         summary = replaying.replay(
-            logs, result, settings, force=force, nodes=nodes, start=start, end=end, progress=progress
+            logs,
+            result,
+            settings,
+            force=force,
+            nodes=nodes,
+            start=start,
+            end=end,
+            resume=resume,
+            progress=progress,
         )
     return _tell(terminal, summary, as_json, quiet)
 
@@ -93,6 +114,20 @@ def default_output(first_log: Path) -> Path:
     for suffix in reversed(_SUFFIXES):
         name = name.removesuffix(suffix)
     return Path(f"{name}.timemap.mcap")
+
+
+def _earlier_settings(resume: Path | None, nodes: Path | None) -> Settings | None:
+    """What settings are that nobody states."""
+    if resume is None:
+        return None
+    if nodes is not None:
+        raise UsageError(
+            "--nodes and --resume exclude each other: the nodes are those of the earlier result",
+            hint="leave --nodes out",
+        )
+    from timemap_cli.resuming import Earlier
+
+    return Earlier.of(resume).settings
 
 
 def _overrides(

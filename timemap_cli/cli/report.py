@@ -4,12 +4,10 @@ from pathlib import Path
 
 import click
 
-from timemap_cli.cli.chosen import begins_with, chosen_result, title_of
+from timemap_cli.cli.chosen import HTML, begins_with, chosen_result, title_of
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode
-
-_HTML = b"<!doctype html>"
 
 
 @click.command(short_help="one page to look at: the map over time, the changes, what they rest on")
@@ -39,7 +37,7 @@ def report(terminal: Terminal, /, result: Path | None, output: Path | None, forc
     output = output or Path(title + ".html")
     with (
         ResultReader(result) as reader,
-        AtomicFile(output, force=force, may_replace=begins_with(_HTML), replaced="a page") as file,
+        AtomicFile(output, force=force, may_replace=begins_with(HTML), replaced="a page") as file,
     ):
         file.write(page(title, page_data(reader)).encode())
         file.commit()

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from timemap_cli.logs.batches import Float64s, Int64s
 from timemap_cli.logs.rigid import from_translation_rotation, interpolate
+from timemap_cli.model.state import State
 
 Bools = NDArray[np.bool_]
 Int32s = NDArray[np.int32]
@@ -65,6 +66,26 @@ class History:
         self._fresh_count += len(stamps_ns)
         if self._fresh_count > MAX_SAMPLES:
             self._settle()
+
+    def kept(self) -> State:
+        """All samples, for `restored`."""
+        self._settle()
+        return {
+            "first_ns": int(self.first_ns),
+            "stamps_ns": self._stamps,
+            "translation": self._translation,
+            "rotation": self._rotation,
+            "parent": self._parent,
+        }
+
+    @classmethod
+    def restored(cls, state: State) -> History:
+        """The history that was kept."""
+        history = cls()
+        history.first_ns, history._stamps = state["first_ns"], state["stamps_ns"]
+        history._translation, history._rotation = state["translation"], state["rotation"]
+        history._parent = state["parent"]
+        return history
 
     def forget(self, before_ns: int) -> None:
         """Drop the samples before a stamp, except the last of them."""

@@ -74,8 +74,11 @@ class Inspection:
         tuple[int, int] | None
     )  # from the first scan to the last, by their stamps; None without a selection
     chains: tuple[tuple[str, ...], ...]  # frames from the map to each laser, where poses come from transforms
-    missing_returns: dict[str, MissingReturns]  # of each selected topic
-    no_return: str | None  # "clear" or "ignore"; None without a selection
+    missing_returns: dict[
+        tuple[int, str], MissingReturns
+    ]  # by log and selected topic; empty where not tested
+    missing_are_clear: dict[tuple[int, str], bool]  # by the same: what is made of it
+    no_return: str | None  # "clear" or "ignore" (in one log at least); None without a selection
     problems: tuple[str, ...]  # of the recordings together
 
 
@@ -115,6 +118,7 @@ def inspect_recordings(recordings: Sequence[Recording], settings: Settings) -> I
         span_ns=plan.span_ns if plan else None,
         chains=_chains(seen, plan),
         missing_returns=dict(plan.missing_returns) if plan else {},
+        missing_are_clear={key: one.missing_is_clear for key, one in plan.beams.items()} if plan else {},
         no_return=plan.no_return if plan else None,
         problems=plan.problems if plan else (),
     )
@@ -177,6 +181,7 @@ class _LogReader:
         plan: Survey | None,
         choices: dict[str, PoseChoice | None],
     ) -> None:
+        self._index = index
         self._recording = recording
         self._sample = sample
         self._rejected = 0  # transforms and poses of this recording that cannot be used
@@ -220,7 +225,8 @@ class _LogReader:
 
     def _new_source(self, choice: PoseChoice) -> PoseSource:
         source = PoseSource(choice.map_frame, choice.pose)
-        for batch in self._sample.static_transforms:
+        (drive,) = (drive for drive in self._sample.drives if self._index in drive)
+        for batch in self._sample.static.of_drive(drive):
             source.add(batch)
         return source
 

@@ -35,6 +35,14 @@ class MissingReturns:
     beams: int  # missing returns looked at
     contradicted: float | None  # share of them that pass through something solid; None: too few to tell
 
+    def __add__(self, other: "MissingReturns") -> "MissingReturns":
+        """What both tests found together."""
+        if self.contradicted is None or other.contradicted is None:
+            return other if self.contradicted is None else self
+        beams = self.beams + other.beams
+        share = (self.beams * self.contradicted + other.beams * other.contradicted) / beams
+        return MissingReturns(beams, share)
+
     @property
     def are_clear(self) -> bool:
         """Whether a missing return counts as free space; it does where there is nothing against it."""

@@ -11,6 +11,7 @@ from timemap_cli.logs.history import Bools
 from timemap_cli.logs.interleave import RecordedTopic
 from timemap_cli.logs.rigid import compose
 from timemap_cli.logs.transforms import TransformBuffer
+from timemap_cli.model.state import State
 
 TF = "tf"  # what a selection says where poses come from the transforms
 TRANSFORM_TYPES = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
@@ -91,6 +92,15 @@ class PoseSource:
         last[cut_last] = first[cut_last]
         first[cut_first] = last[cut_first]
         return first, last, (first_known & last_known) | cut_last | cut_first
+
+    def kept(self) -> State:
+        """Poses and moving transforms, for `restore`."""
+        return {"child": self._child, **self._buffer.kept()}
+
+    def restore(self, state: State) -> None:
+        """Take over what another source kept; this one must have nothing but static transforms."""
+        self._child = state["child"]
+        self._buffer.restore(state)
 
     def forget(self, before_ns: int) -> None:
         """Drop what look-ups from ``before_ns`` on do not need."""

@@ -11,9 +11,9 @@ from timemap_cli.logs.interleave import joined
 from timemap_cli.logs.poses import transform_topics
 from timemap_cli.logs.recordings import Recording
 from timemap_cli.logs.selection import POSE_TYPES, SCAN_TYPE
+from timemap_cli.logs.static_transforms import StaticTransforms, read_static_transforms
 
-WINDOWS = 30  # over all recordings
-LEAST_WINDOWS = 4  # of each recording
+WINDOWS = 15  # of each recording, whatever others there are: a replay in parts finds what one in one go does
 SCANS_OF_WINDOW = 20
 # Scans come in so long a time, however they are bunched.
 LEAST_WINDOW_NS = 3_000_000_000
@@ -28,7 +28,7 @@ class Sample:
 
     scans: Mapping[tuple[int, str], tuple[ScanBatch, ...]]  # (index of the recording, topic) -> scans
     transforms: tuple[tuple[TransformBatch, ...], ...]  # of each recording
-    static_transforms: tuple[TransformBatch, ...]  # of all recordings, whole
+    static: StaticTransforms  # of all recordings, whole
     poses: tuple[tuple[PoseBatch, ...], ...]  # of each recording
     drives: tuple[Drive, ...]  # recordings that share transforms and poses
 
@@ -44,11 +44,10 @@ def take_sample(recordings: Sequence[Recording], scan_topics: Collection[str]) -
     Poses are looked up between samples up to 10 s apart, and in all recordings of a drive: so far around the
     scans they are read, from each of them.
     """
-    n_windows = max(LEAST_WINDOWS, WINDOWS // max(1, len(recordings)))
     scans: dict[tuple[int, str], tuple[ScanBatch, ...]] = {}
     stretches: list[list[Stretch]] = []
     for index, recording in enumerate(recordings):
-        batches, spans = _read_windows(recording, scan_topics, n_windows)
+        batches, spans = _read_windows(recording, scan_topics)
         for topic in _present(recording, scan_topics):
             found = tuple(batch for batch in batches if batch.topic == topic)
             if not found:
@@ -66,7 +65,7 @@ def take_sample(recordings: Sequence[Recording], scan_topics: Collection[str]) -
     return Sample(
         scans,
         transforms,
-        tuple(batch for recording in recordings for batch in _static_transforms(recording)),
+        StaticTransforms.of((read_static_transforms(recording)[0] for recording in recordings), None),
         tuple(tuple(b for b in found if isinstance(b, PoseBatch)) for found in around),
         drives(recordings, transforms),
     )
@@ -89,12 +88,12 @@ def thinned(batch: ScanBatch, every: int) -> ScanBatch:
 
 
 def _read_windows(
-    recording: Recording, scan_topics: Collection[str], n_windows: int
+    recording: Recording, scan_topics: Collection[str]
 ) -> tuple[list[ScanBatch], list[Stretch]]:
     """Scans in windows, and where those lie."""
     present = _present(recording, scan_topics)
-    stretches = list(windows(recording, _densest(recording, present), n_windows))
-    most = SCANS_OF_WINDOW * n_windows // len(stretches)
+    stretches = list(windows(recording, _densest(recording, present)))
+    most = SCANS_OF_WINDOW * WINDOWS // len(stretches)
     found: list[ScanBatch] = []
     for start_ns, end_ns in stretches:
         parts = recording.batches(present, start_ns=start_ns, end_ns=end_ns)
@@ -126,18 +125,18 @@ def widened(stretches: Sequence[Stretch], by_ns: int) -> list[Stretch]:
     return found
 
 
-def windows(recording: Recording, count: int, n_windows: int) -> Iterator[Stretch]:
+def windows(recording: Recording, count: int) -> Iterator[Stretch]:
     """Stretches of log time [start, end) spread evenly over a recording with `count` scans.
 
     Where they would cover the recording it is one stretch.
     """
     duration = recording.end_ns - recording.start_ns + 1
     length = max(LEAST_WINDOW_NS, duration * SCANS_OF_WINDOW // max(1, count))
-    if length * n_windows >= duration:
+    if length * WINDOWS >= duration:
         yield recording.start_ns, recording.end_ns + 1
         return
-    for index in range(n_windows):
-        start_ns = recording.start_ns + (duration - length) * index // (n_windows - 1)
+    for index in range(WINDOWS):
+        start_ns = recording.start_ns + (duration - length) * index // (WINDOWS - 1)
         yield start_ns, start_ns + length
 
 
@@ -148,12 +147,6 @@ def _thin_scans(batches: Sequence[ScanBatch], most: int) -> Iterator[ScanBatch]:
         counts[batch.topic] += len(batch.stamps_ns)
     for batch in batches:
         yield thinned(batch, round(counts[batch.topic] / most))
-
-
-def _static_transforms(recording: Recording) -> list[TransformBatch]:
-    _, static = transform_topics(recording.topics)
-    parts = [batch for part in recording.batches(static) for batch in part] if static else []
-    return [batch for batch in parts if isinstance(batch, TransformBatch)]
 
 
 def _first_scans(recording: Recording, topic: str) -> tuple[ScanBatch, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from timemap_cli.logs.batches import Float32s, Float64s, Int64s, ScanBatch
+from timemap_cli.model.state import State
 
 WINDOW_NS = 10_000_000_000
 # A sweep longer than this is a driver's mistake (seconds for milliseconds), not a scanner.
@@ -92,14 +94,8 @@ class ScanWindow:
         entries = np.empty(len(ranges), _ENTRY)
         entries["stamp"], entries["log"] = batch.stamps_ns, batch.log_ns
         entries["sweep"] = sweep_durations(batch)
-        code = self._kind_codes.setdefault(kind, self._chunk_count)
-        self._kinds[code] = kind
-        entries["recording"], entries["topic"] = recording, kind.scanner
-        entries["frame"], entries["kind"] = frame, code
-        entries["chunk"], entries["row"] = self._chunk_count, np.arange(len(ranges))
-        self._chunks[self._chunk_count] = ranges, code
-        self._chunk_count += 1
-        self.nbytes += ranges.nbytes
+        entries["recording"], entries["frame"] = recording, frame
+        self._hold(entries, ranges, kind)
         self._coming = np.concatenate([self._coming, entries])
 
     def arrive(self, until_ns: int) -> Arrived:
@@ -164,6 +160,47 @@ class ScanWindow:
             for begin, end in pairwise(starts)
         ]
         return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
+
+    def kept(self) -> State:
+        """What is coming and waiting, for `restore`."""
+        entries = np.concatenate([self._coming, self._waiting])
+        order = np.lexsort([entries["row"], entries["chunk"]])
+        coming = np.arange(len(entries)) < len(self._coming)
+        entries, coming = entries[order], coming[order]
+        runs = self.cut(entries, len(entries), 2**62)
+        state: State = {name: entries[name] for name in ("stamp", "log", "sweep", "frame")}
+        return state | {
+            "clock_ns": min(self.clock_ns, self._span_ns[1]),  # what lies behind the span is read once more
+            "floor_ns": self._floor_ns,
+            "coming": coming,
+            "kinds": [dataclasses.astuple(kind) for kind, _ in runs],
+            "starts": [run.start for _, run in runs],
+            **{f"ranges{i}": self.gather(entries[run]) for i, (_, run) in enumerate(runs)},
+        }
+
+    def restore(self, state: State) -> int:
+        """Take over what another window kept; this one must be empty. Returns how many scans wait."""
+        self.clock_ns, self._floor_ns = state["clock_ns"], state["floor_ns"]
+        entries = np.empty(len(state["stamp"]), _ENTRY)
+        for name in ("stamp", "log", "sweep", "frame"):
+            entries[name] = state[name]
+        entries["recording"] = -1  # before those that are read now
+        stops = [*state["starts"], len(entries)][1:]
+        for i, (values, start, stop) in enumerate(zip(state["kinds"], state["starts"], stops, strict=True)):
+            kind, ranges, run = Kind(*values), state[f"ranges{i}"], slice(start, stop)
+            self._hold(entries[run], ranges, kind)
+        self._coming, self._waiting = entries[state["coming"]], entries[~state["coming"]]
+        return len(self._waiting)
+
+    def _hold(self, entries: Entries, ranges: Float32s, kind: Kind) -> None:
+        """Hold the ranges (n, beams) of these scans (n,), and note in them where they are."""
+        code = self._kind_codes.setdefault(kind, self._chunk_count)
+        self._kinds[code] = kind
+        entries["topic"], entries["kind"] = kind.scanner, code
+        entries["chunk"], entries["row"] = self._chunk_count, np.arange(len(ranges))
+        self._chunks[self._chunk_count] = ranges, code
+        self._chunk_count += 1
+        self.nbytes += ranges.nbytes
 
     def release(self) -> None:
         """Let go of the ranges of scans that are neither coming nor waiting; ``gather`` them first."""

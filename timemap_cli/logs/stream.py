@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from timemap_cli.logs.batches import (
     BeamLayout,
     Float64s,
     ScanBatch,
-    TransformBatch,
 )
 from timemap_cli.logs.beams import Beams, settle
 from timemap_cli.logs.history import Bools
@@ -29,6 +29,8 @@ from timemap_cli.logs.scan_window import (
     repeats,
 )
 from timemap_cli.logs.selection import Selection
+from timemap_cli.logs.static_transforms import StaticTransforms, read_static_transforms
+from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
 
 # Blocks of this many scans keep the cost per block small; more only cost memory.
@@ -37,6 +39,7 @@ MOST_SCANS = 512
 MOST_BYTES = 16_000_000
 # Without a scan for so long, what waits is let out and only the newest transforms are kept.
 SILENCE_NS = 60_000_000_000
+_EARLIER = -1  # stands for the recordings of an earlier replay
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +47,20 @@ class EndOfRecording:
     """Says that the last scan of a recording has come out."""
 
     recording: int
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """Says that all recordings have been read, and what of them has not come out yet: `state` is for `sweeps`."""
+
+    state: State
+
+
+class Resumed:
+    """Says that the scans to come are of the recordings, not such as an earlier replay left."""
+
+
+Coming = Sweeps | EndOfRecording | Waiting | Resumed
 
 
 @dataclass(slots=True)
@@ -73,7 +90,8 @@ def sweeps(
     start_ns: int | None = None,
     end_ns: int | None = None,
     drives: Sequence[Sequence[int]] | None = None,
-) -> Iterator[Sweeps | EndOfRecording]:
+    earlier: State | None = None,
+) -> Iterator[Coming]:
     """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
 
     ``recordings`` are in the order of their starts; ``beams`` is by (index, topic).
@@ -82,17 +100,29 @@ def sweeps(
     drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
     (open) cut by the scans' stamps; static transforms count wherever they stand. Which scans share a block
     has no bearing on any value.
+
+    ``earlier`` is what an earlier replay of the same selection left `Waiting`: the scans go on as if its recordings
+    stood before these.
     """
     span_ns = (BEGINNING_NS if start_ns is None else start_ns, NEVER_NS if end_ns is None else end_ns)
-    static = [_static_transforms(recording, counts) for recording in recordings]
-    for number, group in enumerate(drives or joined(recordings, WINDOW_NS)):
-        poses = PoseSource(selection.map_frame, selection.pose)
-        # A drive's first part may be the only one to hold the static transforms: its own come last and
-        # replace what the others say.
-        for batch in _by_nearness(static, group):
-            poses.add(batch)
+    groups = drives or joined(recordings, WINDOW_NS)
+    static = _static_transforms(recordings, counts, earlier)
+    begin = partial(_Drive, recordings, selection, beams, counts, span_ns)
+    goes_on = earlier is not None and recordings[groups[0][0]].start_ns <= earlier["log_end_ns"] + WINDOW_NS
+    if earlier is not None:
+        if not goes_on:
+            yield from begin(_poses(selection, static, (), earlier), earlier).what_is_left()
+        yield Resumed()
+    for number, group in enumerate(groups):
+        before = earlier if goes_on and not number else None
+        poses = _poses(selection, static, group, before)
         rejected = poses.rejected if number else 0
-        yield from _Drive(recordings, selection, beams, counts, span_ns, poses).blocks(group)
+        drive = begin(poses, before)
+        yield from drive.blocks(group)
+        if number == len(groups) - 1:
+            kept = static.kept(group, goes_on=before is not None)
+            yield Waiting(prefixed("static", kept) | drive.kept())
+        yield from drive.what_is_left()
         counts.transforms_dropped += poses.rejected - rejected
 
 
@@ -107,6 +137,7 @@ class _Drive:
         counts: ScanCounts,
         span_ns: tuple[int, int],
         poses: PoseSource,
+        earlier: State | None = None,
     ) -> None:
         self._recordings = recordings
         self._rank = {topic: rank for rank, topic in enumerate(selection.scan_topics)}
@@ -120,25 +151,54 @@ class _Drive:
         self._newest_ns: dict[int, int] = {}  # recording -> largest stamp of its scans
         self._ends: list[tuple[int, int]] = []  # (stamp after which it is over, recording), not yet told
         self._ended: set[int] = set()
-        self._scan_log_ns = NEVER_NS
+        self._group: Sequence[int] = ()
+        self._scan_log_ns = self._log_end_ns = BEGINNING_NS
+        if earlier is not None:
+            self._restore(earlier)
 
     def blocks(self, group: Sequence[int]) -> Iterator[Sweeps | EndOfRecording]:
-        """Yield the blocks of the recordings, and their ends."""
-        self._scan_log_ns = self._recordings[group[0]].start_ns
+        """Yield the blocks of the recordings and their ends, but for what waits until all of them have been read."""
+        self._group = group
+        if self._scan_log_ns == BEGINNING_NS:
+            self._scan_log_ns = self._recordings[group[0]].start_ns
+        self._log_end_ns = max(self._log_end_ns, *(self._recordings[index].end_ns for index in group))
         topics = {index: self._topics(index) for index in group}
         for index, batches, until_ns in interleaved(self._recordings, topics, group):
             if batches is None:
                 self._end(index)
             else:
                 self._take(index, batches)
+            if until_ns == NEVER_NS:  # all have been read
+                break
             self._arrive(until_ns)
             yield from self._let_out(until_ns)
             if self._window.ready_before_ns >= self._end_ns:
                 break
+
+    def what_is_left(self) -> Iterator[Sweeps | EndOfRecording]:
+        """Yield what waits, and the ends of the recordings that have not been told."""
         self._arrive(NEVER_NS)
-        for index in group:
+        for index in self._group or ((_EARLIER,) if not self._ends else ()):
             self._end(index)
         yield from self._placed(self._window.take_all(), NEVER_NS)
+
+    def kept(self) -> State:
+        """What waits, and what it needs to come out, for another drive that goes on."""
+        return {
+            "frames": list(self._frame_codes),
+            "ends_ns": [over_ns for over_ns, _ in self._ends],
+            "scan_log_ns": self._scan_log_ns,
+            "log_end_ns": self._log_end_ns,
+            **prefixed("window", self._window.kept()),
+            **prefixed("poses", self._poses.kept()),
+        }
+
+    def _restore(self, state: State) -> None:
+        self._frame_codes = {frame: code for code, frame in enumerate(state["frames"])}
+        self._ends = [(over_ns, _EARLIER) for over_ns in state["ends_ns"]]
+        self._scan_log_ns, self._log_end_ns = state["scan_log_ns"], state["log_end_ns"]
+        self._counts.read += self._window.restore(without_prefix("window", state))
+        self._newest_ns[_EARLIER] = self._window.clock_ns
 
     def _topics(self, index: int) -> tuple[str, ...]:
         moving, _ = transform_topics(self._recordings[index].topics)
@@ -207,7 +267,7 @@ class _Drive:
         ):
             yield from self._placed(window.take_ready(), window.ready_before_ns)
             self._poses.forget(window.oldest_ns - MAX_SWEEP_NS)
-        if NEVER_NS > until_ns > self._scan_log_ns + SILENCE_NS:
+        if until_ns > self._scan_log_ns + SILENCE_NS:
             yield from self._placed(window.take_all(), window.ready_before_ns)
             self._poses.forget_all_but(SILENCE_NS)
 
@@ -254,21 +314,27 @@ class _Drive:
             )
 
 
-def _static_transforms(recording: Recorded, counts: ScanCounts) -> list[TransformBatch]:
-    """All static transforms of a recording."""
-    _, topics = transform_topics(recording.topics)
-    found: list[TransformBatch] = []
-    for batches in recording.batches(topics) if topics else ():
-        found += [batch for batch in batches if isinstance(batch, TransformBatch)]
-        counts.transforms_dropped += sum(batch.count for batch in batches if isinstance(batch, BadBatch))
-    return found
+def _static_transforms(
+    recordings: Sequence[Recorded], counts: ScanCounts, earlier: State | None
+) -> StaticTransforms:
+    found = []
+    for recording in recordings:
+        transforms, bad = read_static_transforms(recording)
+        found.append(transforms)
+        counts.transforms_dropped += bad
+    return StaticTransforms.of(found, None if earlier is None else without_prefix("static", earlier))
 
 
-def _by_nearness(static: Sequence[list[TransformBatch]], group: Sequence[int]) -> Iterator[TransformBatch]:
-    """Static transforms of all recordings, those of the group last; of either the first recording's last."""
-    others = [index for index in range(len(static)) if index not in group]
-    for index in (*reversed(others), *reversed(group)):
-        yield from static[index]
+def _poses(
+    selection: Selection, static: StaticTransforms, group: Sequence[int], earlier: State | None
+) -> PoseSource:
+    """The poses of a drive so far: the static transforms, and what an earlier replay kept of it."""
+    poses = PoseSource(selection.map_frame, selection.pose)
+    for batch in static.of_drive(group, goes_on=earlier is not None):
+        poses.add(batch)
+    if earlier is not None:
+        poses.restore(without_prefix("poses", earlier))
+    return poses
 
 
 def _has_bearings(layout: BeamLayout) -> bool:

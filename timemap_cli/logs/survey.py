@@ -1,14 +1,14 @@
 """What a replay needs to know before it starts, found out from a small sample of the recordings."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import chain, pairwise
 
 import numpy as np
 
 from timemap_cli.config import InputSettings, Settings
 from timemap_cli.errors import UsageError
-from timemap_cli.logs.batches import PoseBatch, ScanBatch
+from timemap_cli.logs.batches import PoseBatch, ScanBatch, TransformBatch
 from timemap_cli.logs.beams import BeamCounts, Beams, settle
 from timemap_cli.logs.drives import Drive
 from timemap_cli.logs.frames import Frames
@@ -37,7 +37,8 @@ class Survey:
     selection: Selection
     beams: Mapping[tuple[int, str], Beams]  # (index of the recording, scan topic); none where it has no scans
     beam_counts: Mapping[str, BeamCounts]  # scan topic -> kinds of its beams in the sample
-    missing_returns: Mapping[str, MissingReturns]  # scan topic -> what the test found; empty where not tested
+    missing_returns: Mapping[tuple[int, str], MissingReturns]  # by the same; empty where not tested
+    missing_so_far: Mapping[str, MissingReturns]  # by scan topic: over these recordings and all before them
     problems: tuple[str, ...]
     spans_ns: tuple[
         tuple[int, int], ...
@@ -51,17 +52,28 @@ class Survey:
 
     @property
     def no_return(self) -> str:
-        """What a missing return counts as: "clear" or "ignore" (no evidence); "ignore" if for one scanner."""
+        """What a missing return counts as: "clear" or "ignore" (no evidence); "ignore" if in one recording."""
         return "clear" if all(beams.missing_is_clear for beams in self.beams.values()) else "ignore"
 
     @property
     def contradicted(self) -> float | None:
-        """Share of missing returns that pass through something solid; of several scanners the worst."""
+        """Share of missing returns that pass through something solid; of several recordings the worst."""
         shares = [found.contradicted for found in self.missing_returns.values()]
         return max((share for share in shares if share is not None), default=None)
 
 
-def survey(recordings: Sequence[Recording], settings: Settings) -> Survey:
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What was found out about earlier recordings; what these say themselves comes before it."""
+
+    static_transforms: tuple[TransformBatch, ...] = ()  # those that hold, if these recordings have none
+    missing_so_far: Mapping[str, MissingReturns] = field(default_factory=dict)  # as in Survey
+
+
+NOTHING_KNOWN = Known()
+
+
+def survey(recordings: Sequence[Recording], settings: Settings, known: Known = NOTHING_KNOWN) -> Survey:
     """Look at a few hundred scans of the recordings and choose what to read and how.
 
     UsageError where there are no scans or no poses, or several and none named; it lists lines to paste.
@@ -71,11 +83,17 @@ def survey(recordings: Sequence[Recording], settings: Settings) -> Survey:
         candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
     except UsageError as error:
         raise _with_damage(error, recordings) from error
-    return survey_sample(recordings, take_sample(recordings, candidates), candidates, settings)
+    sample = take_sample(recordings, candidates)
+    sample = replace(sample, static=replace(sample.static, earlier=known.static_transforms))
+    return survey_sample(recordings, sample, candidates, settings, known)
 
 
 def survey_sample(
-    recordings: Sequence[Recording], sample: Sample, candidates: Sequence[str], settings: Settings
+    recordings: Sequence[Recording],
+    sample: Sample,
+    candidates: Sequence[str],
+    settings: Settings,
+    known: Known = NOTHING_KNOWN,
 ) -> Survey:
     """The same, from a sample that was taken before."""
     seen = what_is_seen(recordings, sample, topics_of(recordings))
@@ -84,19 +102,26 @@ def survey_sample(
     chosen = {key: scans for key, scans in sample.scans.items() if key[1] in selection.scan_topics}
     beams = {key: settle(scans) for key, scans in chosen.items()}
     counts = _counts(chosen, beams)
-    missing: dict[str, MissingReturns] = {}
-    for topic in selection.scan_topics:
+    missing: dict[tuple[int, str], MissingReturns] = {}
+    so_far = dict(known.missing_so_far)
+    for index, topic in sorted(beams):
         if settings.input.no_return == "auto":
-            missing[topic] = _examined(sample, topic, beams, poses, selection, settings.map.radius)
-        if not _are_clear(missing.get(topic), settings.input):
-            beams |= {key: b.ignoring_missing() for key, b in beams.items() if key[1] == topic}
+            found = _examined(
+                sample, index, topic, beams[index, topic], poses, selection, settings.map.radius
+            )
+            missing[index, topic] = found
+            # A part of a building may have little glass: what the recordings before this one found counts too. Those
+            # after it do not, so that a replay in parts finds what one in one go does.
+            so_far[topic] = so_far[topic] + found if topic in so_far else found
+        if not _are_clear(so_far.get(topic), settings.input):
+            beams[index, topic] = beams[index, topic].ignoring_missing()
     problems = (
         *_problems(recordings, sample, poses, selection),
         *_carried(seen, sample, selection),
         *_short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
-    return Survey(selection, beams, counts, missing, problems, spans_ns, sample.drives)
+    return Survey(selection, beams, counts, missing, so_far, problems, spans_ns, sample.drives)
 
 
 def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:
@@ -117,7 +142,7 @@ def names_of(recordings: Sequence[Recording]) -> tuple[str, ...]:
 
 def what_is_seen(recordings: Sequence[Recording], sample: Sample, topics: Mapping[str, str]) -> Seen:
     """Frames and poses of a sample."""
-    transforms = chain(sample.static_transforms, *sample.transforms)
+    transforms = chain(sample.static.all, *sample.transforms)
     edges = dict.fromkeys((batch.parent, batch.child) for batch in transforms)
     frames: dict[str, tuple[str, ...]] = {}
     for (_, topic), batches in sample.scans.items():
@@ -133,18 +158,20 @@ class SampledPoses:
         self._sample = sample
         self._sources: dict[tuple[Drive, str, str], PoseSource] = {}
 
-    def source(self, index: int, map_frame: str, pose: str) -> PoseSource:
-        """Poses of the drive that a recording belongs to; static transforms of the others count too."""
+    def source(self, index: int, map_frame: str, pose: str, *, alone: bool = False) -> PoseSource:
+        """Poses of the drive that a recording belongs to, or those that the recording holds `alone`."""
         (drive,) = (drive for drive in self._sample.drives if index in drive)
-        key = drive, map_frame, pose
+        return self._source((index,) if alone else drive, map_frame, pose)
+
+    def _source(self, group: Drive, map_frame: str, pose: str) -> PoseSource:
+        key = group, map_frame, pose
         if key not in self._sources:
             source = self._sources[key] = PoseSource(map_frame, pose)
-            for transforms in (
-                *self._sample.static_transforms,
-                *(batch for other in drive for batch in self._sample.transforms[other]),
-            ):
+            for transforms in self._sample.static.of_drive(group):
                 source.add(transforms)
-            for poses in (batch for other in drive for batch in self._sample.poses[other]):
+            for transforms in (batch for index in group for batch in self._sample.transforms[index]):
+                source.add(transforms)
+            for poses in (batch for index in group for batch in self._sample.poses[index]):
                 source.add(poses)
         return self._sources[key]
 
@@ -210,18 +237,23 @@ def _are_clear(found: MissingReturns | None, wanted: InputSettings) -> bool:
 
 def _examined(
     sample: Sample,
+    index: int,
     topic: str,
-    beams: Mapping[tuple[int, str], Beams],
+    beams: Beams,
     poses: SampledPoses,
     selection: Selection,
     radius: float,
 ) -> MissingReturns:
-    """What the test of missing returns finds for a topic."""
-    sweeps = []
-    for index, batch in sample.of_topic(topic):
-        source = poses.source(index, selection.map_frame, selection.pose)
-        sweeps.append(_placed(batch, beams[index, topic], source))
-    return examine([block for block in sweeps if len(block)], radius)
+    """What the test of missing returns finds for a topic of a recording.
+
+    By the poses that the recording holds itself, if it holds any: those beside it do not change the outcome.
+    """
+    sweeps: list[Sweeps] = []
+    for alone in (True, False):
+        source = poses.source(index, selection.map_frame, selection.pose, alone=alone)
+        sweeps = sweeps or [_placed(batch, beams, source) for batch in sample.scans[index, topic]]
+        sweeps = [block for block in sweeps if len(block)]
+    return examine(sweeps, radius)
 
 
 def _placed(batch: ScanBatch, beams: Beams, source: PoseSource) -> Sweeps:
@@ -274,7 +306,7 @@ def _carried(seen: Seen, sample: Sample, selection: Selection) -> tuple[str, ...
     """A sentence for every laser that cannot move in the map frame, because the robot carries both."""
     if selection.pose != TF or not seen.frames.roots_of(selection.map_frame):
         return ()
-    fixed = {frozenset((batch.parent, batch.child)) for batch in sample.static_transforms}
+    fixed = {frozenset((batch.parent, batch.child)) for batch in sample.static.all}
     lasers = dict.fromkeys(
         frame for topic in selection.scan_topics for frame in seen.scan_frames.get(topic, ())
     )

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from timemap_cli.logs.batches import Float64s, Int64s, TransformBatch
 from timemap_cli.logs.history import NO_PARENT, Bools, History, Int32s, usable
 from timemap_cli.logs.rigid import IDENTITY, compose, from_translation_rotation, invert
+from timemap_cli.model.state import State, prefixed, without_prefix
 
 Rows = NDArray[np.intp]
 Path = tuple[str, ...]
@@ -76,6 +77,20 @@ class TransformBuffer:
                     result[some] = compose(target_from_common, common_from_source)
                     valid[some] = True
         return result, valid
+
+    def kept(self) -> State:
+        """The moving transforms, for `restore`."""
+        state: State = {"names": self._names, "moving": list(self._moving)}
+        for number, history in enumerate(self._moving.values()):
+            state |= prefixed(str(number), history.kept())
+        return state
+
+    def restore(self, state: State) -> None:
+        """Take over the moving transforms that another buffer kept; this one must have none."""
+        codes = np.array([self._code(name) for name in state["names"]], np.int32)
+        for number, child in enumerate(state["moving"]):
+            kept = without_prefix(str(number), state)
+            self._moving[child] = History.restored(kept | {"parent": codes[kept["parent"]]})
 
     def forget(self, before_ns: int) -> None:
         """Drop what look-ups from ``before_ns`` on do not need; each edge keeps its last sample before."""

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from timemap_cli.model import chance
 from timemap_cli.model.levels import LONGEST_STEP, Level
+from timemap_cli.model.state import State
 
 Ints = npt.NDArray[np.int64]
 Count = TypeVar("Count", np.int64, np.uint32)
@@ -85,6 +86,26 @@ class Draw:
             array = getattr(self, name)
             setattr(self, name, np.append(array, np.full(nodes - len(array), empty, np.int64)))
         self._owed = np.append(self._owed, np.zeros(nodes - len(self._owed)))
+
+    def kept(self, node: int) -> State:
+        """What the draw holds of a node, for `restore`."""
+        counts = [int(array[node]) for array in (self._reached, self._sum, self._next, self._stamp)]
+        return {"draw": np.array(counts, np.int64), "owed": float(self._owed[node])}
+
+    def restore(self, node: int, state: State) -> None:
+        """Take over what another draw kept of a node."""
+        arrays = (self._reached, self._sum, self._next, self._stamp)
+        for array, value in zip(arrays, state["draw"].tolist(), strict=True):
+            array[node] = value
+        self._owed[node] = state["owed"]
+
+    def kept_of_all(self) -> State:
+        """What the draw holds of no node alone, for `restore_of_all`."""
+        return {"wanted": self._wanted, "granted": self._granted}
+
+    def restore_of_all(self, state: State) -> None:
+        """Take over what another draw kept of no node alone."""
+        self._wanted, self._granted = float(state["wanted"]), float(state["granted"])
 
     def taken(self, groups: Groups, stamps_ns: Ints, keys: chance.Keys) -> npt.NDArray[np.bool_]:
         """Which scans (n,) the level takes; `stamps_ns` is in the groups' order, `keys` per node."""

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.state import State
+
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
@@ -22,3 +24,16 @@ class Estimate:
     samples: npt.NDArray[np.uint16]  # (angle_bins,) remembered ranges
     status: npt.NDArray[np.uint8]  # (angle_bins,) what it rests on, a `Status` each
     last_seen_ns: npt.NDArray[np.int64]  # (angle_bins,) stamp of the level's newest scan of it; 0 never
+
+    def kept(self) -> State:
+        """Everything but the node and the level, for `restored`."""
+        arrays = (self.ranges, self.support, self.plausibility, self.samples, self.status, self.last_seen_ns)
+        return {"stamp_ns": self.stamp_ns, **dict(zip(_ARRAYS, arrays, strict=True))}
+
+    @classmethod
+    def restored(cls, node: int, level: str, state: State) -> "Estimate":
+        """The estimate that was kept."""
+        return cls(node, level, state["stamp_ns"], *(state[name] for name in _ARRAYS))
+
+
+_ARRAYS = ("ranges", "support", "plausibility", "samples", "status", "last_seen_ns")

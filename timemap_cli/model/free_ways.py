@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from timemap_cli.model.angles import quarter_turns
 from timemap_cli.model.elementary import distance
+from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
 
 Floats = npt.NDArray[np.float64]
@@ -118,6 +119,23 @@ class FreeWays:
                 break
             passed[doubtful] |= _inside(way[doubtful], kept.rows(end[doubtful] - back), fan)
         return np.asarray(passed.all(axis=1))
+
+    def kept(self) -> State:
+        """The views of all scanners, for `restore`."""
+        state: State = {"scanners": list(self._trails)}
+        for scanner, trail in self._trails.items():
+            views = {"origin": trail.kept.origin, "along": trail.kept.along, "depth": trail.kept.depth}
+            here = {"place": np.array((trail.x, trail.y)), "stamp_ns": trail.stamp_ns}
+            state |= prefixed(str(scanner), views | here)
+        return state
+
+    def restore(self, state: State) -> None:
+        """Take over the views that another one kept."""
+        for scanner in state["scanners"]:
+            found = without_prefix(str(scanner), state)
+            views = _Views(found["origin"], found["along"], found["depth"])
+            x, y = found["place"].tolist()
+            self._trails[scanner] = _Trail(views, x, y, found["stamp_ns"])
 
     def _keep(self, sweeps: Sweeps, views: _Views) -> tuple[_Views, Ints, Ints]:
         """The views kept before and in this block, and which of them each scan may look at: [begin, end) (n,)."""

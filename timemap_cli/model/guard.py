@@ -13,6 +13,7 @@ import numpy as np
 from timemap_cli.model.contradiction import Bounds, firm_ranges
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.observer import Observations
+from timemap_cli.model.state import State
 from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
 
 ENOUGH_SCANS = 15  # samples behind a range that judges; and scans of a moving robot that overrule it ...
@@ -74,6 +75,23 @@ class Guard:
             for i in np.flatnonzero(in_doubt & ~np.isnan(share)).tolist():
                 believed[rows[i]] = self._hear(seen, int(rows[i]), doubtful=bool(doubtful[i]))
         return believed
+
+    def kept(self, node: int) -> State:
+        """What is expected of a node, and doubted, for `restore`."""
+        state: State = {}
+        if node < len(self._expected):
+            state |= {"low": self._expected.low[node], "width": self._expected.width[node]}
+        if (doubt := self._doubts.get(node)) is not None:
+            state |= {"witness": doubt.witness, "since_ns": doubt.since_ns, "votes": doubt.votes}
+        return state
+
+    def restore(self, node: int, state: State) -> None:
+        """Take over what another guard kept of a node."""
+        if "low" in state:
+            bounds = Bounds(state["low"][None], state["width"][None])
+            self._expected = self._expected.with_rows(np.array([node]), bounds)
+        if "witness" in state:
+            self._doubts[node] = Doubt(state["witness"], state["since_ns"], state["votes"])
 
     def _hear(self, seen: Observations, row: int, *, doubtful: bool) -> bool:
         """Whether one observation may be learnt, after what it says about its node's doubt was heard."""

@@ -14,6 +14,7 @@ from timemap_cli.model import chance
 from timemap_cli.model.draw import Draw, Groups
 from timemap_cli.model.levels import Level
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.state import State
 from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
 
 Ints = npt.NDArray[np.int64]
@@ -177,3 +178,50 @@ class Memory:
             self._stamps_ns[rows],
             self.level.window,
         )
+
+    def kept(self, node: int) -> State:
+        """All that is remembered of a node, for `restore`."""
+        state, row = self._draw.kept(node), int(self._row[node])
+        if row < 0:
+            return state
+        samples, pairs = (int(n[row].max(initial=0)) for n in (self._n_samples, self._n_pairs))
+        state |= {name: array[row, ...] for name, array in self._by_row().items()}
+        state |= {name: array[row, :, :samples] for name, array in self._samples_by_row().items()}
+        state |= {name: array[row, :, :pairs] for name, array in self._pairs_by_row().items()}
+        return state
+
+    def restore(self, node: int, state: State) -> None:
+        """Take over what another memory kept of a node, which must be known."""
+        self._draw.restore(node, state)
+        if "taken" not in state:
+            return
+        self._make_room(np.array([node]))
+        row = int(self._row[node])
+        for name, array in self._by_row().items():
+            array[row] = state[name]
+        for name, array in (self._samples_by_row() | self._pairs_by_row()).items():
+            array[row, :, : state[name].shape[1]] = state[name]
+
+    def kept_of_all(self) -> State:
+        """What is remembered of no node alone, for `restore_of_all`."""
+        return self._draw.kept_of_all()
+
+    def restore_of_all(self, state: State) -> None:
+        """Take over what another memory kept of no node alone."""
+        self._draw.restore_of_all(state)
+
+    def _by_row(self) -> dict[str, npt.NDArray[np.generic]]:
+        return {
+            "taken": self._taken,
+            "stamp_ns": self._stamps_ns,
+            "n_samples": self._n_samples,
+            "n_pairs": self._n_pairs,
+            "spared": self._spared,
+            "last_seen_ns": self._last_seen_ns,
+        }
+
+    def _samples_by_row(self) -> dict[str, npt.NDArray[np.generic]]:
+        return {"samples": self._samples, "spared_then": self._spared_then}
+
+    def _pairs_by_row(self) -> dict[str, npt.NDArray[np.generic]]:
+        return {"left": self._left, "right": self._right}

@@ -8,9 +8,10 @@ import numpy.typing as npt
 
 from timemap_cli.model.elementary import bearings
 from timemap_cli.model.free_ways import FreeWays
-from timemap_cli.model.gate import Gate, Passages, passing
+from timemap_cli.model.gate import Gate, Passage, Passages, passing
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import NO_NODE, Placement
+from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.model.virtual_scan import Bools, Ranges, virtual_scans
 
@@ -77,6 +78,27 @@ class Observer:
     def nodes(self) -> Sequence[Node]:
         """All nodes so far, in the order of their numbers."""
         return self._placement.nodes
+
+    def kept(self) -> State:
+        """What the observer holds, for `restore`."""
+        passages = [(p.x, p.y, p.yaw) for p in self._passages.values()]
+        return {
+            "nodes": self._placement.centres,
+            "all_given": self._placement.all_given,
+            "passed": np.array(list(self._passages), np.int64).reshape(-1, 2),
+            "passed_at": np.array(passages, np.float64).reshape(-1, 3),
+            "passed_ns": np.array([p.stamp_ns for p in self._passages.values()], np.int64),
+            **prefixed("ways", self._ways.kept()),
+        }
+
+    def restore(self, state: State) -> None:
+        """Go on where another observer stopped."""
+        self._placement.nodes = [Node(x, y) for x, y in state["nodes"].tolist()]
+        self._placement.all_given = bool(state["all_given"])
+        columns = (state[name].tolist() for name in ("passed", "passed_at", "passed_ns"))
+        for (node, scanner), (x, y, yaw), stamp_ns in zip(*columns, strict=True):
+            self._passages[node, scanner] = Passage(x, y, yaw, stamp_ns)
+        self._ways.restore(without_prefix("ways", state))
 
     def observe(self, sweeps: Sweeps) -> Observations:
         """Observations from a block of scans; blocks must come in stamp order."""

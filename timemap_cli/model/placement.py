@@ -19,8 +19,8 @@ class Placement:
     def __init__(self, spacing: float, given: Sequence[Node] = ()) -> None:
         """`spacing` [m]: a scan farther than this from every node makes one, unless all nodes are given."""
         self.nodes = list(given)
+        self.all_given = bool(given)
         self._spacing = spacing
-        self._all_given = bool(given)
 
     @property
     def centres(self) -> Floats:
@@ -42,7 +42,7 @@ class Placement:
             nearest, near = self._nearest(places[start:])
             chosen[start:] = np.where(near, nearest, NO_NODE)
             far = np.flatnonzero(~near & np.isfinite(places[start:]).all(axis=1))
-            if self._all_given or not len(far):
+            if self.all_given or not len(far):
                 break
             start += int(far[0])
             # whole millimetres: a node's centre is a key of its random numbers

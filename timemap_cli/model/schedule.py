@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.state import State
+
 
 @dataclass(frozen=True, slots=True)
 class Period:
@@ -22,6 +24,14 @@ class Schedule:
         self._period = period
         self._scans = 0
         self._due_ns: int | None = None
+
+    def kept(self) -> State:
+        """Where the schedule stands, for `restore`."""
+        return {"scans": self._scans, "due_ns": self._due_ns}
+
+    def restore(self, state: State) -> None:
+        """Go on where another schedule stopped."""
+        self._scans, self._due_ns = state["scans"], state["due_ns"]
 
     def parts(self, stamps_ns: npt.NDArray[np.int64]) -> Iterator[tuple[slice, bool]]:
         """Consecutive parts of a block with ascending stamps (n,), and whether estimates are due after each.

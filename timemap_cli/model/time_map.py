@@ -11,6 +11,7 @@ from timemap_cli.model.levels import Level
 from timemap_cli.model.memory import Memory, Remembered
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations
+from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.virtual_scan import CLEAR
 
 Ints = npt.NDArray[np.int64]
@@ -36,6 +37,8 @@ class TimeMap:
         self.nodes = list(nodes)  # in the order of their numbers
         self._estimator = estimator
         self._memories = [Memory(level, angle_bins, seed) for level in levels]
+        for memory in self._memories:
+            memory.add_nodes(self.nodes)
         self._changed: list[set[int]] = [set() for _ in levels]
 
     @property
@@ -53,6 +56,34 @@ class TimeMap:
             changed.update(
                 memory.remember(seen.nodes[rows], seen.stamps_ns[rows], seen.ranges[rows]).tolist()
             )
+
+    def kept(self, node: int) -> State:
+        """All that the levels remember of a node, for `restore`."""
+        state: State = {"changed": [node in changed for changed in self._changed]}
+        for memory in self._memories:
+            state |= prefixed(memory.level.name, memory.kept(node))
+        return state
+
+    def restore(self, node: int, state: State) -> None:
+        """Take over what another map kept of a node; `restore_of_all` first."""
+        for memory, changed, is_changed in zip(self._memories, self._changed, state["changed"], strict=True):
+            memory.restore(node, without_prefix(memory.level.name, state))
+            if is_changed:
+                changed.add(node)
+
+    def kept_of_all(self) -> State:
+        """What the levels remember of no node alone, for `restore_of_all`."""
+        state: State = {"nodes": len(self.nodes)}
+        for memory in self._memories:
+            state |= prefixed(memory.level.name, memory.kept_of_all())
+        return state
+
+    def restore_of_all(self, state: State, nodes: Sequence[Node]) -> None:
+        """Take over what another map kept of no node alone; `nodes` begin with those that it knew."""
+        self.nodes = list(nodes[: state["nodes"]])
+        for memory in self._memories:
+            memory.add_nodes(self.nodes)
+            memory.restore_of_all(without_prefix(memory.level.name, state))
 
     def estimates(self) -> list[Estimate]:
         """Estimates of the nodes that changed since the last call, level by level and in order of node."""

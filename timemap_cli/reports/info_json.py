@@ -24,15 +24,28 @@ def info_document(inspection: Inspection) -> dict[str, object]:
     warnings = list(inspection.selection.warnings) if inspection.selection else []
     return {
         "schema": "timemap.info/1",
-        "logs": [_log(log, selected, trouble) for log in inspection.logs],
+        "logs": [
+            _log(log, selected, trouble, _missing_of(inspection, index))
+            for index, log in enumerate(inspection.logs)
+        ],
         "span_ns": [str(stamp_ns) for stamp_ns in inspection.span_ns] if inspection.span_ns else None,
         "no_return": inspection.no_return,
-        "missing_returns": {topic: _missing(found) for topic, found in inspection.missing_returns.items()},
         "problems": [*trouble, *warnings, *inspection.problems],
     }
 
 
-def _log(log: LogInfo, selected: dict[str, object] | None, trouble: list[str]) -> dict[str, object]:
+def _missing_of(inspection: Inspection, index: int) -> dict[str, object]:
+    """By topic, what the test of a log's missing returns found."""
+    return {
+        topic: {**_missing(found), "are_clear": inspection.missing_are_clear[log, topic]}
+        for (log, topic), found in inspection.missing_returns.items()
+        if log == index
+    }
+
+
+def _log(
+    log: LogInfo, selected: dict[str, object] | None, trouble: list[str], missing: dict[str, object]
+) -> dict[str, object]:
     return {
         "path": log.path,
         "format": log.format,
@@ -41,6 +54,7 @@ def _log(log: LogInfo, selected: dict[str, object] | None, trouble: list[str]) -
         "scans": [_scan(scan) for scan in log.scans],
         "poses": [_pose(pose) for pose in log.poses],
         "selected": selected,
+        "missing_returns": missing,
         "problems": [*trouble, *log.problems],
     }
 

@@ -88,26 +88,34 @@ def _outlook(inspection: Inspection) -> list[str]:
     if inspection.span_ns is not None:
         begin, end = map(_to_the_millisecond, inspection.span_ns)
         rows.append(("stamps", f"{begin} to {end}, the time that --start and --end mean"))
-    found = [inspection.missing_returns.get(topic) for topic in selection.scan_topics]
-    rows += [("no return", _no_return(test, inspection.no_return)) for test in found]
+    rows += _no_returns(inspection)
     rows += _list("warning", selection.warnings)
     rows += _list("problem", inspection.problems)
     return ["A replay would use", *_columns(rows)]
 
 
-def _no_return(found: MissingReturns | None, no_return: str | None) -> str:
-    if found is None:
-        return f"{'free space' if no_return == 'clear' else 'no evidence'}, as set"
+def _no_returns(inspection: Inspection) -> Iterator[Row]:
+    """What a missing return counts as; for several logs or topics one row for each of them."""
+    if not inspection.missing_returns:
+        yield "no return", f"{'free space' if inspection.no_return == 'clear' else 'no evidence'}, as set"
+    several_topics = len({topic for _, topic in inspection.missing_returns}) > 1
+    for (index, topic), found in inspection.missing_returns.items():
+        of = [inspection.logs[index].path] if len(inspection.logs) > 1 else []
+        of += [topic] if several_topics else []
+        are_clear = inspection.missing_are_clear[index, topic]
+        yield "no return", ": ".join([*of, _no_return(found, are_clear)])
+
+
+def _no_return(found: MissingReturns, are_clear: bool) -> str:
+    word = "free space" if are_clear else "no evidence"
+    if found.beams == 0:
+        return "there is none"
     if found.contradicted is None:
-        return (
-            "there is none"
-            if found.beams == 0
-            else f"free space; {found.beams} in the sample, too few to test"
-        )
+        return f"{word}; {found.beams} in the sample, too few to test"
     share = f"{100 * found.contradicted:.0f} % of those sampled pass through something solid"
-    if found.are_clear:
-        return f"free space: {share}"
-    return f"no evidence: {share} (glass, mirrors, black surfaces)"
+    if found.are_clear != are_clear:
+        return f"{word}: {share}, but others of the recordings before it"
+    return f"{word}: {share}" if are_clear else f"{word}: {share} (glass, mirrors, black surfaces)"
 
 
 def _list(word: str, sentences: Sequence[str]) -> list[Row]:

@@ -62,15 +62,19 @@ def _kept(made: list[tuple[int, Estimate]], times: npt.NDArray[np.int64]) -> lis
 
 def _packed(kept: list[tuple[int, Estimate]], angle_bins: int) -> dict[str, str]:
     ranges = np.array([estimate.ranges for _, estimate in kept], np.float64).reshape(len(kept), angle_bins)
+    steps, nodes = np.array([(step, one.node) for step, one in kept], np.int64).reshape(len(kept), 2).T
+    return packed(steps, nodes, ranges)
+
+
+def packed(
+    steps: npt.NDArray[np.int64], nodes: npt.NDArray[np.int64], ranges: npt.NDArray[np.float64]
+) -> dict[str, str]:
+    """Rows of ranges (n, angle_bins) [m] with their steps and nodes (n,), as the page reads them."""
     whole = np.full(ranges.shape, _UNKNOWN, "<u2")
     finite = np.isfinite(ranges)
     whole[finite] = np.rint(ranges[finite] * _PER_METRE)
     whole[np.isposinf(ranges)] = _CLEAR
-    arrays = {
-        "step": np.array([step for step, _ in kept], "<u2"),
-        "node": np.array([estimate.node for _, estimate in kept], "<u4"),
-        "ranges": whole,
-    }
+    arrays = {"step": steps.astype("<u2"), "node": nodes.astype("<u4"), "ranges": whole}
     return {name: base64.b64encode(zlib.compress(array.tobytes())).decode() for name, array in arrays.items()}
 
 

@@ -77,6 +77,15 @@ class CdrParser:
         self._place += size
         return raw[:-1].decode()
 
+    def octets(self) -> bytes:
+        """The next sequence of single bytes."""
+        (size,) = self.unpack("I")
+        raw = self._message[self._place : self._place + size]
+        if len(raw) < size:
+            raise ValueError("a message ends within a sequence")
+        self._place += size
+        return raw
+
     def header(self) -> tuple[int, str]:
         """Stamp [ns] and frame of the next `std_msgs/Header`."""
         (sec,), (nanosec,) = self.unpack("i"), self.unpack("I")

@@ -11,6 +11,7 @@ REPORT = "timemap/report.json"
 CHANGES = "timemap/changes.json"
 CHANGE_TOPIC = "/timemap/changes"
 MARKER_TOPIC = "/timemap/changes/markers"
+STATE_TOPIC = "/timemap/state"
 FORMAT = "timemap.result/1"
 
 

@@ -79,6 +79,11 @@ class ResultFile:
             if chunk.message_start_time <= end_ns:
                 yield from self._messages_of(chunk, wanted, end_ns)
 
+    def count(self, topic: str) -> int:
+        """How many messages a topic has."""
+        counts = self._summary.statistics.channel_message_counts if self._summary.statistics else {}
+        return sum(counts.get(channel, 0) for channel in self._channels_of([topic]))
+
     def times_ns(self, topic: str) -> tuple[int, ...]:
         """Log times of the messages of a topic, in order."""
         return self._guarded(lambda: tuple(m.log_time for _, _, m in self._reader.iter_messages([topic])))

@@ -11,6 +11,7 @@ OCCUPANCY_GRID = "nav_msgs/msg/OccupancyGrid"
 TF_MESSAGE = "tf2_msgs/msg/TFMessage"
 STATUS = "timemap_msgs/msg/Status"
 CHANGE = "timemap_msgs/msg/Change"
+STATE = "timemap_msgs/msg/State"
 MARKERS = "visualization_msgs/msg/MarkerArray"
 
 _SEPARATOR = "=" * 80
@@ -135,6 +136,21 @@ _FIELDS = {
         "builtin_interfaces/Time[] since            # of each episode\n"
         "builtin_interfaces/Time[] until            # one less than since while it holds\n"
         "float32 share_held                         # of the looks, 0..1\n"
+    ),
+    "timemap_msgs/msg/StateArray": (
+        "string name\n"
+        "string dtype     # as NumPy has it, little endian: <u2, <f8, ...\n"
+        "uint32[] shape\n"
+        "uint8[] data     # row by row\n"
+    ),
+    STATE: (
+        "# What a later replay needs to go on where this one stopped: `timemap replay --resume`. Its names are no\n"
+        "# promise: another timemap may keep other things.\n"
+        "std_msgs/Header header\n"
+        "string part      # reading, learning, node, changes\n"
+        "uint32 node      # its number\n"
+        "string plain     # JSON: numbers and texts by name\n"
+        "timemap_msgs/StateArray[] arrays\n"
     ),
     STATUS: (
         "# What a level knows about each angle bin, beside the scan of the same node and stamp.\n"

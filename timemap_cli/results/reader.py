@@ -15,6 +15,8 @@ from timemap_cli.results.channels import LevelTopic
 from timemap_cli.results.container import ResultFile
 from timemap_cli.results.layouts import frame_of, unpack_estimate
 from timemap_cli.results.messages import unpack_nodes
+from timemap_cli.results.state_messages import FORMAT as STATE_FORMAT
+from timemap_cli.results.state_messages import StatePart, unpack_state
 
 
 class ResultReader:
@@ -77,6 +79,15 @@ class ResultReader:
         """When recordings ended that had taught something: the maps of the levels are written then."""
         return self._file.times_ns(LevelTopic.MAP.of(self.levels[0]))
 
+    @property
+    def can_be_resumed(self) -> bool:
+        """Whether this timemap can go on from it."""
+        return self.metadata.get("state") == STATE_FORMAT
+
+    def count(self, topic: str) -> int:
+        """How many messages a topic has."""
+        return self._file.count(topic)
+
     def estimates(self, level: str, until_ns: int | None = None) -> dict[int, Estimate]:
         """Each node's newest estimate of a level, not later than a time; nodes in order of their number.
 
@@ -109,6 +120,20 @@ class ResultReader:
                     estimate = unpack_estimate(scan, message, level, self.angle_bins)
                     yield estimate.stamp_ns, estimate
         except ValueError as error:
+            raise self._unreadable() from error
+
+    def state(self) -> Iterator[StatePart]:
+        """What a later replay needs to go on, one part at a time: first those of no node, but the changes last."""
+        if not self.can_be_resumed:
+            version = self.metadata.get("version", "unknown")
+            raise TimemapError(
+                f"{self.path} was written by timemap {version}, which kept other things: it cannot be resumed",
+                hint="resume with that version, or replay all recordings in one go",
+            )
+        try:
+            for _, message in self._file.messages([channels.STATE_TOPIC]):
+                yield unpack_state(message)
+        except (ValueError, TypeError, struct.error) as error:
             raise self._unreadable() from error
 
     def _read_nodes(self) -> tuple[Node, ...]:

@@ -15,13 +15,14 @@ from timemap_cli.errors import TimemapError
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.level_map import merged_points, occupancy_grid
 from timemap_cli.model.nodes import Node
-from timemap_cli.results import channels, definitions
+from timemap_cli.results import channels, definitions, state_messages
 from timemap_cli.results.atomic_file import AtomicFile
 from timemap_cli.results.change_messages import pack_change, pack_markers
 from timemap_cli.results.channels import LevelTopic
 from timemap_cli.results.container import is_result
 from timemap_cli.results.layouts import pack_scans, pack_statuses
 from timemap_cli.results.messages import NodeFrames, pack_grid, pack_points
+from timemap_cli.results.state_messages import StatePart, pack_state
 
 VIEWERS_SPAN_NS = 93 * 24 * 3600 * 1_000_000_000  # Foxglove and Lichtblick refuse files that span more
 
@@ -112,7 +113,8 @@ class ResultWriter:
         """Write every level as points and as a grid, in the map frame; estimates by node."""
         self._write_frames(stamp_ns)
         now_ns = self._advance(stamp_ns)
-        for level, estimates in estimates_by_level.items():
+        for level, by_node in estimates_by_level.items():
+            estimates = dict(sorted(by_node.items()))  # not in the order in which they came first
             points = pack_points(merged_points(nodes, estimates), now_ns, self._map_frame)
             self._add_of_level(LevelTopic.POINTS, level, points, now_ns)
             grid = pack_grid(occupancy_grid(nodes, estimates, self._radius), now_ns, self._map_frame)
@@ -131,6 +133,22 @@ class ResultWriter:
             self._add(channels.CHANGE_TOPIC, definitions.CHANGE, message, now_ns, latched=False)
         markers = pack_markers(events, now_ns, self._map_frame)
         self._add(channels.MARKER_TOPIC, definitions.MARKERS, markers, now_ns, latched=True)
+
+    def write_known(self, nodes: Sequence[Node], estimates: Sequence[Estimate], stamp_ns: int) -> None:
+        """Write what an earlier result knew, as known at `stamp_ns`: a result holds every node's newest estimates.
+
+        All are logged at that time, so that a result does not span what lies between.
+        """
+        self._advance(stamp_ns)
+        self.write_nodes(nodes, stamp_ns)
+        newest_ns = max((one.stamp_ns for one in estimates), default=stamp_ns)
+        self.write_estimates(estimates, max(stamp_ns, newest_ns))  # newer where a clock began anew
+
+    def write_state(self, kept: StatePart, stamp_ns: int) -> None:
+        """Write a part of what a later replay needs, when the newest scan replayed was `stamp_ns`."""
+        now_ns = self._advance(stamp_ns)
+        message = pack_state(kept, now_ns, self._map_frame)
+        self._add(channels.STATE_TOPIC, definitions.STATE, message, now_ns, latched=False)
 
     def finish(
         self,
@@ -180,6 +198,7 @@ class ResultWriter:
             "radius": repr(self._radius),
             "map_frame": self._map_frame,
             "nodes": str(len(self._frames.nodes)),
+            "state": state_messages.FORMAT,
         }
 
     def _attach(self, name: str, media_type: str, text: str) -> None:

@@ -6,8 +6,11 @@ const LEVEL_COLOURS = ["#e69f00", "#56b4e9", "#222222", "#cc79a7", "#999933"];
 const KIND_COLOURS = { appeared: "#009e73", vanished: "#d55e00", moved: "#0072b2" };
 const CONFIG = { displaylogo: false, responsive: true, scrollZoom: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
 const EVENTS = DATA.changes.events;
+const CHECK = DATA.check;  // a baseline and what is out of tolerance against it, if the result was checked
+const BASELINE_COLOUR = "#d1004b";
 const state = { step: DATA.times.length - 1, node: null, event: null, shown: {} };
 const estimates = {};  // by level: {step, node, ranges}
+const expected = {};  // the same of the baseline
 
 const byId = (id) => document.getElementById(id);
 // Nanoseconds since 1970 as text do not fit a number: the last six digits are left out for plotting.
@@ -28,15 +31,18 @@ async function unpacked(base64) {
   return new Response(stream).arrayBuffer();
 }
 
+async function rows(packed) {
+  return {
+    step: new Uint16Array(await unpacked(packed.step)),
+    node: new Uint32Array(await unpacked(packed.node)),
+    ranges: new Uint16Array(await unpacked(packed.ranges)),
+  };
+}
+
 async function load() {
-  for (const level of DATA.levels) {
-    const packed = DATA.estimates[level];
-    estimates[level] = {
-      step: new Uint16Array(await unpacked(packed.step)),
-      node: new Uint32Array(await unpacked(packed.node)),
-      ranges: new Uint16Array(await unpacked(packed.ranges)),
-    };
-  }
+  for (const level of DATA.levels) estimates[level] = await rows(DATA.estimates[level]);
+  if (!CHECK) return;
+  for (const [level, packed] of Object.entries(CHECK.estimates)) expected[level] = await rows(packed);
 }
 
 // Row of the newest estimate of every node, up to a step.
@@ -46,8 +52,8 @@ function newest(level, step) {
   return rows;
 }
 
-function endsOf(level, row, x0, y0, out) {
-  const bins = DATA.angle_bins, ranges = estimates[level].ranges, turn = 2 * Math.PI / bins;
+function endsOf(ranges, row, x0, y0, out) {
+  const bins = DATA.angle_bins, turn = 2 * Math.PI / bins;
   for (let bin = 0; bin < bins; bin++) {
     const range = ranges[row * bins + bin];
     if (range >= CLEAR) continue;
@@ -58,8 +64,25 @@ function endsOf(level, row, x0, y0, out) {
 
 function pointsAt(level, step) {
   const out = { x: [], y: [] };
-  for (const [node, row] of newest(level, step)) endsOf(level, row, ...DATA.nodes[node], out);
+  for (const [node, row] of newest(level, step)) endsOf(estimates[level].ranges, row, ...DATA.nodes[node], out);
   return out;
+}
+
+// The baseline's ends of the levels that are ticked, under what the result holds.
+function baselineTraces() {
+  if (!CHECK) return [];
+  const out = { x: [], y: [] };
+  for (const level of Object.keys(expected).filter((one) => state.shown[one])) {
+    CHECK.nodes.forEach(([x, y], row) => endsOf(expected[level].ranges, row, x, y, out));
+  }
+  const spots = CHECK.failures.flatMap((one) => (one.name.startsWith("ranges.places") ? one.spots : []));
+  const rings = {
+    type: "scatter", mode: "markers", name: "places", x: spots.map((s) => s.x), y: spots.map((s) => s.y), text: spots.map((s) => s.text),
+    hoverinfo: "text", visible: state.shown.baseline,
+    marker: { size: 34, symbol: "circle-open", color: BASELINE_COLOUR, line: { width: 2 } },
+  };
+  return [{ type: POINTS, mode: "markers", name: "baseline", hoverinfo: "skip", visible: state.shown.baseline,
+    marker: { size: 4, color: BASELINE_COLOUR }, ...out }, rings];
 }
 
 function outlines(events) {
@@ -111,7 +134,7 @@ function planTraces() {
   const halo = {
     type: "scatter", mode: "lines", name: "chosen", hoverinfo: "skip", line: { color: "#f5b700", width: 5 }, ...outlines(chosen),
   };
-  return [...levels, nodes, halo, ...kinds, handles];
+  return [...baselineTraces(), ...levels, nodes, halo, ...kinds, handles];
 }
 
 // Times in which nothing was recorded are left out of the time line, if they are longer than an hour.
@@ -180,7 +203,7 @@ function drawNode() {
   if (state.node === null) return;
   const traces = [...DATA.levels].reverse().map((level, place) => {
     const out = { x: [], y: [] }, row = newest(level, state.step).get(state.node);
-    if (row !== undefined) endsOf(level, row, 0, 0, out);
+    if (row !== undefined) endsOf(estimates[level].ranges, row, 0, 0, out);
     return { type: "scatter", mode: "markers", name: level, hoverinfo: "skip",
       marker: { size: 9 - 3 * Math.min(place, 2), color: colourOf(level) }, ...out };
   });
@@ -293,6 +316,38 @@ function fillLevels() {
   }
 }
 
+function fillCheck() {
+  if (!CHECK) return;
+  state.shown.baseline = true;
+  const label = document.createElement("label"), box = document.createElement("input"), swatch = document.createElement("span");
+  box.type = "checkbox"; box.checked = true; box.id = "baseline";
+  box.addEventListener("change", () => { state.shown.baseline = box.checked; drawPlan(); });
+  swatch.className = "swatch"; swatch.style.background = BASELINE_COLOUR;
+  label.append(box, swatch, "baseline");
+  byId("levels").append(label);
+  byId("check-box").hidden = false;
+  byId("check-title").textContent = `Check against ${CHECK.baseline}: ${CHECK.outcome}, ` +
+    `${CHECK.failures.length} of ${counted(CHECK.figures, "figure")} out of tolerance`;
+  byId("causes").textContent = [...CHECK.causes.map((one) => `likely: ${one}`), ...CHECK.notes].join("\n");
+  if (CHECK.failures.length) byId("failures").tHead.innerHTML = "<tr><th>figure</th><th>is</th><th>allowed</th><th>what, where</th></tr>";
+  for (const one of CHECK.failures) {
+    fillFailure([one.name, one.value, one.allowed, one.text], one.spots[0]);
+    for (const spot of one.spots) fillFailure(["", "", "", `${spot.x.toFixed(2)}, ${spot.y.toFixed(2)}: ${spot.text}`], spot);
+  }
+}
+
+function fillFailure(cells, spot) {
+  const row = byId("failures").tBodies[0].insertRow();
+  for (const text of cells) row.insertCell().append(text);
+  if (!spot) return;
+  row.className = "placed";
+  row.addEventListener("click", () => {
+    if (spot.nodes.length && spot.nodes[0] < DATA.nodes.length) state.node = spot.nodes[0];
+    draw();
+    Plotly.relayout("plan", { "xaxis.range": [spot.x - 2, spot.x + 2], "yaxis.range": [spot.y - 2, spot.y + 2] });
+  });
+}
+
 function draw() { drawPlan(); drawLine(); drawNode(); markRows(); }
 
 function clicked(target) {
@@ -305,7 +360,7 @@ function clicked(target) {
 
 async function start() {
   await load();
-  fillLevels(); fillEvents(); fillRest();
+  fillLevels(); fillCheck(); fillEvents(); fillRest();
   const slider = byId("time");
   slider.max = Math.max(0, DATA.times.length - 1);
   slider.value = slider.max;

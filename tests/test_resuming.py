@@ -1,0 +1,285 @@
+"""A replay that goes on from an earlier result gives what a replay of all recordings in one go gives."""
+
+import shutil
+import sqlite3
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer as McapWriter
+from rosbags.rosbag1 import Reader as BagReader
+from rosbags.rosbag1 import Writer as BagWriter
+
+from tests.conftest import ROOT, shared_data
+from tests.test_replay import standing_log
+from timemap_cli.config import load
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.replay import replay
+from timemap_cli.results import channels, writer
+from timemap_cli.results.channels import LevelTopic
+from timemap_cli.results.container import ResultFile
+from timemap_cli.results.reader import ResultReader
+from timemap_cli.results.state_messages import Part
+from timemap_cli.resuming import Earlier
+
+SETTINGS = load(None)
+SAMPLES = [ROOT / "sample_logs" / n for n in ("patrol_monday.mcap", "patrol_tuesday.bag", "patrol_thursday")]
+DAY_NS = 86_400_000_000_000
+
+
+def one_after_the_other(tmp_path, logs, settings=SETTINGS):
+    result = None
+    for number, log in enumerate(logs):
+        resumed, result = result, tmp_path / f"{number}.timemap.mcap"
+        replay([log], result, settings, resume=resumed)
+    return result
+
+
+def in_one_go(tmp_path, logs, settings=SETTINGS):
+    return replay(logs, tmp_path / "whole.timemap.mcap", settings).result
+
+
+def plain(state):
+    """A state in a form that can be compared, to the bit."""
+    return {
+        name: (value.dtype.str, value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value
+        for name, value in state.items()
+    }
+
+
+def end_of(path):
+    """All that a result says of the end: nodes, estimates, maps, changes, and what a later replay needs."""
+    with ResultReader(path) as result, ResultFile(path) as file:
+        estimates = {
+            (level, node): plain(estimate.kept())
+            for level in result.levels
+            for node, estimate in result.estimates(level).items()
+        }
+        maps = {
+            topic.of(level): file.last_message(topic.of(level))
+            for level in result.levels
+            for topic in (LevelTopic.POINTS, LevelTopic.MAP)
+        }
+        state = {(kept.part, kept.node): plain(kept.state) for kept in result.state()}
+        return result.nodes, estimates, maps, result.changes, state
+
+
+def assert_same_end(one, other):
+    for mine, theirs in zip(end_of(one), end_of(other), strict=True):
+        assert mine == theirs
+
+
+def test_days_in_three_formats_resumed_are_the_days_in_one_go(tmp_path):
+    resumed = one_after_the_other(tmp_path, SAMPLES)
+    assert_same_end(resumed, in_one_go(tmp_path, SAMPLES))
+    with ResultReader(resumed) as result:
+        assert len(result.changes["events"]) > 2
+
+
+def test_a_recording_cut_within_its_drive_is_the_recording_in_one_go(tmp_path):
+    parts = cut_mcap(SAMPLES[0], tmp_path, [0.31, 0.64])
+    assert_same_end(one_after_the_other(tmp_path, parts), in_one_go(tmp_path, parts))
+
+
+def test_seconds_and_the_papers_profile_go_on_too(tmp_path):
+    overrides = {
+        "profile": "paper",
+        "estimate": {"every": "50obs"},
+        "levels": [
+            {"name": "fast", "window": 5, "half_life": "4s"},
+            {"name": "slow", "window": 30, "half_life": "60s"},
+        ],
+    }
+    settings = load(None, overrides)
+    assert_same_end(
+        one_after_the_other(tmp_path, SAMPLES[:2], settings), in_one_go(tmp_path, SAMPLES[:2], settings)
+    )
+
+
+def test_intel_cut_in_three_formats_is_intel_in_one_go(tmp_path):
+    cuts = [0.33, 0.71]
+    parts = [
+        cut_mcap(shared_data("intel/intel.mcap"), tmp_path, cuts)[0],
+        cut_bag(shared_data("intel/intel.bag"), tmp_path, cuts)[1],
+        cut_db3(next(shared_data("intel/intel_db3").glob("*.db3")), tmp_path, cuts)[2],
+    ]
+    assert_same_end(one_after_the_other(tmp_path, parts), in_one_go(tmp_path, parts))
+    with ResultReader(tmp_path / "whole.timemap.mcap") as result:
+        assert result.report["scans"]["used"] == 910
+
+
+def test_the_wean_runs_resumed_are_the_runs_in_one_go(tmp_path):
+    runs = [shared_data(f"wean/{name}") for name in ("wean_run1.bag", "wean_run3.mcap", "wean_run4.mcap")]
+    assert_same_end(one_after_the_other(tmp_path, runs), in_one_go(tmp_path, runs))
+
+
+def test_a_resumed_result_holds_the_whole_map_and_only_its_own_time(tmp_path):
+    first, second = (standing_log(tmp_path / f"{n}.mcap", start_ns=n * 200 * DAY_NS) for n in (1, 2))
+    one = replay([first], tmp_path / "one.timemap.mcap", SETTINGS)
+    two = replay([second], tmp_path / "two.timemap.mcap", SETTINGS, resume=one.result)
+    assert (two.scans_read, two.scans_used, dict(two.dropped)) == (100, 100, {})
+    assert not any("Foxglove" in warning for warning in two.warnings)
+    with ResultReader(two.result) as result:
+        assert 400 * DAY_NS <= result.start_ns <= result.end_ns < 400 * DAY_NS + 11 * 10**9
+        assert set(result.estimates("long", result.start_ns)) == {0}
+        assert result.metadata["resumed_from"].startswith('{"name": "one.timemap.mcap", "sha256": "')
+
+
+def test_the_result_does_not_grow_from_day_to_day(tmp_path):
+    result, sizes = None, []
+    for day in range(6):
+        log = standing_log(tmp_path / f"{day}.mcap", n_scans=300, start_ns=(day + 1) * DAY_NS)
+        resumed, result = result, tmp_path / f"{day}.timemap.mcap"
+        replay([log], result, SETTINGS, resume=resumed)
+        sizes.append(result.stat().st_size)
+    assert sizes[-1] < 1.05 * sizes[2]
+
+
+def test_settings_that_differ_are_refused_by_name(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    one = replay([log], tmp_path / "one.timemap.mcap", SETTINGS).result
+    levels = [
+        {"name": "short", "window": 7, "half_life": "5obs"},
+        {"name": "slow", "window": 9, "half_life": "9obs"},
+    ]
+    for overrides, said in [
+        ({"seed": 3}, "seed 3 instead of 0"),
+        ({"map": {"radius": 5}}, "map.radius 5.0 instead of 10.0"),
+        ({"levels": levels}, "levels.long.window none instead of 100"),
+        ({"input": {"no_return": "ignore"}}, "input.no_return ignore instead of auto"),
+    ]:
+        with pytest.raises(UsageError, match=said):
+            replay([log], tmp_path / "two.timemap.mcap", load(None, overrides), resume=one)
+    assert not (tmp_path / "two.timemap.mcap").exists()
+
+
+def test_what_was_found_or_changes_nothing_may_be_stated(tmp_path):
+    log, later = standing_log(tmp_path / "a.mcap"), standing_log(tmp_path / "b.mcap", start_ns=2 * 10**18)
+    one = replay([log], tmp_path / "one.timemap.mcap", SETTINGS).result
+    stated = load(None, {"input": {"scan_topics": ["/scan"], "poses": "tf", "max_dropped": 0.5}})
+    replay([later], tmp_path / "two.timemap.mcap", stated, resume=one)
+
+
+def test_a_mount_that_only_the_first_day_tells_holds_on_the_second(tmp_path):
+    first = standing_log(tmp_path / "a.mcap")
+    later = standing_log(tmp_path / "b.mcap", start_ns=2 * 10**18)
+    bare = copied(later, tmp_path / "bare.mcap", lambda topic, _: topic != "/tf_static")
+    with pytest.raises(UsageError, match="laser"):
+        replay([bare], tmp_path / "alone.timemap.mcap", SETTINGS)
+    one = replay([first], tmp_path / "one.timemap.mcap", SETTINGS).result
+    assert replay([bare], tmp_path / "two.timemap.mcap", SETTINGS, resume=one).scans_used == 100
+
+
+def test_a_result_of_a_timemap_that_kept_other_things_is_refused(tmp_path, monkeypatch):
+    log = standing_log(tmp_path / "a.mcap")
+    monkeypatch.setattr(writer.state_messages, "FORMAT", "timemap.state/0")
+    old = replay([log], tmp_path / "old.timemap.mcap", SETTINGS).result
+    with pytest.raises(TimemapError, match="kept other things: it cannot be resumed"):
+        Earlier.of(old)
+
+
+def test_what_is_known_already_is_refused_and_may_be_cut_off(tmp_path):
+    log = standing_log(tmp_path / "a.mcap", n_scans=600)
+    one = replay([log], tmp_path / "one.timemap.mcap", SETTINGS, end="+30s").result
+    with pytest.raises(
+        UsageError, match=r"begin at 2023-11-14T22:13:20Z, before .*one\.timemap\.mcap ends"
+    ) as raised:
+        replay([log], tmp_path / "two.timemap.mcap", SETTINGS, resume=one)
+    assert raised.value.hint is not None
+    begin = raised.value.hint.rpartition("--start ")[2]
+    assert begin == "2023-11-14T22:13:50Z"
+    two = replay([log], tmp_path / "two.timemap.mcap", SETTINGS, resume=one, start=begin).result
+    assert_same_end(two, replay([log], tmp_path / "whole.timemap.mcap", SETTINGS).result)
+
+
+def test_given_nodes_stay_all_there_are(tmp_path):
+    places = tmp_path / "nodes.csv"
+    places.write_text("2 2\n8 2\n5 5\n")
+    one = replay([SAMPLES[0]], tmp_path / "one.timemap.mcap", SETTINGS, nodes=places).result
+    two = replay([SAMPLES[1]], tmp_path / "two.timemap.mcap", SETTINGS, resume=one).result
+    whole = replay(SAMPLES[:2], tmp_path / "whole.timemap.mcap", SETTINGS, nodes=places).result
+    assert_same_end(two, whole)
+    assert len(end_of(two)[0]) == 3
+
+
+def test_a_recording_or_nothing_cannot_be_resumed(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    for path in (log, tmp_path / "absent.timemap.mcap"):
+        with pytest.raises(UsageError):
+            replay([log], tmp_path / "two.timemap.mcap", SETTINGS, resume=path)
+    assert sorted(tmp_path.iterdir()) == [log]
+
+
+def test_every_part_of_the_state_stands_once_and_nodes_one_by_one(tmp_path):
+    result = replay(SAMPLES[:1], tmp_path / "one.timemap.mcap", SETTINGS).result
+    with ResultReader(result) as reader:
+        parts = [(kept.part, kept.node) for kept in reader.state()]
+        nodes = [(Part.NODE, number) for number in range(len(reader.nodes))]
+        assert parts == [(Part.READING, 0), (Part.LEARNING, 0), (Part.CHANGES, 0), *nodes]
+        assert reader.count(channels.STATE_TOPIC) == len(parts)
+
+
+def borders(start_ns, end_ns, cuts):
+    return [start_ns, *(start_ns + int((end_ns - start_ns) * cut) for cut in cuts), end_ns + 1]
+
+
+def copied(source, target, wanted):
+    """An MCAP file with those messages that are wanted, by topic and log time."""
+    with source.open("rb") as file, target.open("wb") as out:
+        mcap = McapWriter(out)
+        mcap.start(profile="ros2", library="test")
+        schemas, topics = {}, {}
+        for schema, channel, message in make_reader(file).iter_messages():
+            if not wanted(channel.topic, message.log_time):
+                continue
+            if schema.name not in schemas:
+                schemas[schema.name] = mcap.register_schema(schema.name, schema.encoding, schema.data)
+            if channel.topic not in topics:
+                topics[channel.topic] = mcap.register_channel(
+                    channel.topic, channel.message_encoding, schemas[schema.name], channel.metadata
+                )
+            mcap.add_message(topics[channel.topic], message.log_time, message.data, message.publish_time)
+        mcap.finish()
+    return target
+
+
+def cut_mcap(source, folder, cuts):
+    with source.open("rb") as file:
+        statistics = make_reader(file).get_summary().statistics
+    times = borders(statistics.message_start_time, statistics.message_end_time, cuts)
+    return [
+        copied(source, folder / f"part{begin}.mcap", lambda _, now, begin=begin, end=end: begin <= now < end)
+        for begin, end in pairwise(times)
+    ]
+
+
+def cut_bag(source, folder, cuts):
+    parts = []
+    with BagReader(source) as reader:
+        for begin, end in pairwise(borders(reader.start_time, reader.end_time - 1, cuts)):
+            parts.append(folder / f"part{begin}.bag")
+            with BagWriter(parts[-1]) as out:
+                new = {
+                    one.id: out.add_connection(
+                        one.topic, one.msgtype, msgdef=one.msgdef.data, md5sum=one.digest
+                    )
+                    for one in reader.connections
+                }
+                for connection, now, raw in reader.messages():
+                    if begin <= now < end:
+                        out.write(new[connection.id], now, raw)
+    return parts
+
+
+def cut_db3(source, folder, cuts):
+    parts = []
+    with sqlite3.connect(f"file:{source}?mode=ro", uri=True) as whole:
+        ends = whole.execute("SELECT min(timestamp), max(timestamp) FROM messages").fetchone()
+    for begin, end in pairwise(borders(*ends, cuts)):
+        parts.append(folder / f"part{begin}.db3")
+        shutil.copy(source, parts[-1])
+        parts[-1].chmod(0o644)
+        with sqlite3.connect(parts[-1]) as part:
+            part.execute("DELETE FROM messages WHERE timestamp < ? OR timestamp >= ?", (begin, end))
+    return parts
