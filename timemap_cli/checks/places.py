@@ -10,7 +10,8 @@ Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 
 _CELL_M = 0.5  # about the size of a thing
-_LEAST_ENDS = 8
+_CROWD = 8  # ends in a cell
+_LEAST_ENDS = 16  # noise makes a crowd of 8 now and then; a thing of 0.4 m that was moved shows 30 and more
 _LEAST_NODES = 3  # people who stood about are remembered by one or two
 _LEAST_SHARE = 0.4  # of the ends in the cell: along a wall single ends move at its edges
 
@@ -50,7 +51,7 @@ def moved_places(ends: Ends, step_m: float, nodes: int) -> list[MovedPlace]:
     which = np.flatnonzero(_crowded(ends, ends.distance > step_m))
     places = [_place(ends, which[group]) for group in _touching(ends.x[which], ends.y[which])]
     least = min(_LEAST_NODES, nodes)
-    found = [place for place in places if len(place.nodes) >= least]
+    found = [place for place in places if place.ends >= _LEAST_ENDS and len(place.nodes) >= least]
     return sorted(found, key=lambda place: (-place.ends, place.x, place.y))
 
 
@@ -68,7 +69,7 @@ def _crowded(ends: Ends, moved: Bools) -> Bools:
         cells = cells.reshape(-1)
         counts = np.bincount(cells)
         hits = np.bincount(cells[moved], minlength=len(counts))
-        found |= moved & ((hits >= _LEAST_ENDS) & (hits >= _LEAST_SHARE * counts))[cells]
+        found |= moved & ((hits >= _CROWD) & (hits >= _LEAST_SHARE * counts))[cells]
     return found
 
 
