@@ -23,7 +23,7 @@ TOLERANCES: Mapping[str, Tolerance] = {
     "scans.read": Tolerance(0.005, "", "more or fewer scans read"),
     "scans.used": Tolerance(0.01, "", "more or fewer of the scans read are used"),
     "beams.kinds": Tolerance(
-        0.003, "", "share of the hits, missing returns and useless beams, whichever differs most"
+        0.33, "", "change of the share of hits, missing returns or useless beams, in proportion to that share"
     ),
     "nodes.place": Tolerance(0.25, "m", "a node this far away is the same node"),
     "nodes.missing": Tolerance(0.05, "", "nodes of the baseline that are not there"),

@@ -108,7 +108,8 @@ def _check(
         raise UsageError(missing, hint=_USES)
     from timemap_cli.checking import Check
 
-    name = title_of(sources[0])
+    others = f" and {len(sources) - 1} more" if len(sources) > 1 else ""
+    name = title_of(sources[0]) + others
     return Check(sources, baseline, name, tolerances=tolerances, exact=exact, **replaying)
 
 
