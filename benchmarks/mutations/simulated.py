@@ -11,8 +11,6 @@ from sample_logs.drives import Drive, Rates
 from sample_logs.make_samples import FIRST_NS, FRONT, write
 from sample_logs.world import Thing
 
-OBJECTS = ("desk", "machine", "barrel", "column")
-
 
 def simulated(
     path: Path, *, rounds: int = 2, seed: int = 1, moved: str = "", by: tuple[float, float] = (0, 0)

@@ -1,6 +1,6 @@
 import numpy as np
 
-from timemap_cli.checks.places import Ends, moved_places
+from timemap_cli.checks.places import Ends, MovedPlace, confirmed, moved_places
 
 
 def ends(*groups):
@@ -47,8 +47,23 @@ def test_places_apart_are_told_the_larger_first():
     assert [place.ends for place in moved_places(ends(*THREE_SEE_IT, *far), 0.08, nodes=9)] == [21, 18]
 
 
-def test_fewer_ends_than_a_thing_shows_are_noise():
-    assert moved_places(ends(*((5, 2.1, 3.1, node, 0.15) for node in (1, 2, 3))), 0.08, nodes=9) == []
+def place_of(ends, x):
+    return MovedPlace(x, 3.1, ends, (1, 2, 3), 0.15)
+
+
+def test_a_few_ends_at_one_level_are_noise_and_at_several_levels_a_thing():
+    assert confirmed([[place_of(11, 2.1)], [], []]) == [[], [], []]
+    levels = [[place_of(11, 2.1)], [place_of(9, 2.3)], []]
+    assert confirmed(levels) == levels
+
+
+def test_many_ends_at_one_level_are_a_thing():
+    levels = [[], [], [place_of(16, 2.1)]]
+    assert confirmed(levels) == levels
+
+
+def test_places_of_two_levels_apart_do_not_confirm_each_other():
+    assert confirmed([[place_of(11, 2.1)], [place_of(9, 3.2)]]) == [[], []]
 
 
 def test_nothing_to_compare_is_no_place():
