@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.changes.rooms import RADIUS, Box, estimate, ring
-from timemap_cli.changes.difference import Kind
+from timemap_cli.changes.difference import Change, Kind
 from timemap_cli.changes.events import Turn
+from timemap_cli.changes.track import Track
 from timemap_cli.changes.tracker import Tracker
 from timemap_cli.model.nodes import Node
 
@@ -250,3 +251,15 @@ def test_the_order_of_the_nodes_does_not_matter():
         return sorted((e.kind.value, *np.round(e.centre, 6), e.first_seen_ns) for e in house.tracker.events)
 
     assert told((HERE, BESIDE)) == told((BESIDE, HERE))
+
+
+def test_tracks_with_outlines_of_different_sizes_can_be_told_apart():
+    # dropping one that stands behind another of the same kind compares the two
+    points = np.zeros((3, 2)), np.arange(18.0).reshape(9, 2)
+    first, second = (
+        Track.of(Change(Kind.APPEARED, 0.0, 0.0, (0.0, 0.0, 0.0, 0.0), 1.0, (), outline), ("short", "long"))
+        for outline in points
+    )
+    tracks = [first, second]
+    tracks.remove(second)
+    assert tracks == [first]
