@@ -1,4 +1,6 @@
-from timemap_cli.errors import ExitCode, TimemapError, UsageError, no_such_file
+import shlex
+
+from timemap_cli.errors import ExitCode, TimemapError, UsageError, as_word, no_such_file
 
 
 def test_exit_codes_are_those_of_the_readme():
@@ -32,3 +34,10 @@ def test_for_a_missing_file_what_is_called_much_like_it_is_proposed(tmp_path):
     )
     assert no_such_file(tmp_path / "x", "a recording").hint == "a recording"
     assert no_such_file(tmp_path / "nowhere" / "x", "a recording").hint == "a recording"
+
+
+def test_a_name_becomes_one_word_of_a_command_to_paste():
+    """As POSIX shells read it."""
+    assert as_word("/scan") == "/scan"
+    assert shlex.split(as_word("/a b; rm -rf $(x)")) == ["/a b; rm -rf $(x)"]
+    assert as_word("/a\nrm\x1b[2J") == "'/a\\nrm\\x1b[2J'"

@@ -113,6 +113,47 @@ def test_a_process_that_ends_early_is_told():
         list(mapped(lambda: lambda _: os._exit(9), range(100), processors=2))
 
 
+def test_where_no_process_can_be_had_all_is_done_in_this_one(monkeypatch):
+    def refused(_):
+        raise BlockingIOError("too many processes")
+
+    monkeypatch.setattr("multiprocessing.context.ForkProcess.start", refused)
+    before = len(list(Path("/proc/self/fd").iterdir()))
+    assert set(mapped(lambda: lambda _: os.getpid(), [0, 1], processors=2)) == {os.getpid()}
+    assert len(list(Path("/proc/self/fd").iterdir())) == before
+
+
+def test_too_little_memory_in_the_other_process_is_told():
+    def make():
+        def work(_):
+            raise MemoryError
+
+        return work
+
+    with pytest.raises(MemoryError):
+        list(mapped(make, [1], processors=2))
+
+
+def test_a_result_for_which_there_is_no_memory_ends_the_waiting(monkeypatch):
+    def exhausted(*_):
+        raise MemoryError
+
+    monkeypatch.setattr("multiprocessing.connection.Connection.recv_bytes", exhausted)
+    with pytest.raises(TimemapError, match="ended from outside"):
+        list(mapped(lambda: lambda _: 1, [1, 2, 3], processors=2))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
+def test_what_comes_from_the_terminal_is_left_to_the_first_process(number):
+    """It comes to both, and the other one may just be starting."""
+
+    def make():
+        os.kill(os.getpid(), number)
+        return lambda item: item
+
+    assert list(mapped(make, [1, 2], processors=2)) == [1, 2]
+
+
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks for processes in /proc")
 def test_the_second_process_ends_when_the_first_is_killed():
     code = (

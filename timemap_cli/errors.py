@@ -1,5 +1,6 @@
 """What may go wrong that a user can mend, and the exit codes."""
 
+import shlex
 from enum import IntEnum
 from pathlib import Path
 
@@ -44,3 +45,8 @@ def no_such_file(path: Path, otherwise: str) -> UsageError:
     names = [one.name for one in path.parent.iterdir()] if path.parent.is_dir() else []
     near = [str(path.with_name(name)) for name in get_close_matches(path.name, sorted(names), 1)]
     return UsageError(f"there is no file {path}", hint=near[0] if near else otherwise)
+
+
+def as_word(name: str) -> str:
+    """A name as one word of a line to paste into a shell, whatever a recording calls its topics and frames."""
+    return shlex.quote("".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in name))

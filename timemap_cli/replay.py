@@ -17,6 +17,7 @@ from timemap_cli.logs.fingerprint import sha256
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.learner import Kept
+from timemap_cli.model.placement import MOST_NODES
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
 from timemap_cli.results.given_nodes import read_nodes
@@ -204,7 +205,7 @@ def _require_some_use(
         frame = plan.selection.map_frame
         raise UsageError(
             f"{message} (--nodes {nodes}: none is near enough)",
-            hint=f"nodes where the robot drives, in metres of the frame '{frame}'",
+            hint=f"nodes where the robot drives, in metres of the frame {frame!r}",
         )
     raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
 
@@ -223,6 +224,8 @@ def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:
             f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
             "lost, or the place is another one now (to learn them at once: gate.max_contradiction: 1)"
         )
+    if len(observing.nodes) >= MOST_NODES and observing.counts.dropped.get("no_node"):
+        yield f"the map has {MOST_NODES} nodes, the most there may be: scans far from all were dropped (no_node)"
     if unusable := observing.counts.transforms_dropped:
         yield f"{unusable} transforms or poses could not be used"
     if writing.span_ns > VIEWERS_SPAN_NS:

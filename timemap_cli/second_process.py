@@ -19,6 +19,7 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 _MOST_UNDER_WAY = 4  # items handed over whose results were not taken yet
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _PIPE_BYTES = 1 << 20  # what Linux lets anybody have: two or three blocks of scans
 
 
@@ -27,13 +28,14 @@ def mapped(
 ) -> Generator[R, None, None]:
     """Yield `work(item)` of each item in turn, where `work = make()` lives and remembers in a second process.
 
-    Items and results are pickled on their way. What `work` raises is raised here. With one processor, or where a
-    process cannot be forked, all is done in this one.
+    Items and results are pickled on their way. What `work` raises is raised here; TimemapError if the process is
+    ended from outside. With one processor, or where a process cannot be forked, all is done in this one.
     """
-    if (processors or len(_usable_processors())) < 2 or not sys.platform.startswith("linux"):
+    may_fork = (processors or len(_usable_processors())) > 1 and sys.platform.startswith("linux")
+    worker = _started(make) if may_fork else None
+    if worker is None:
         yield from map(make(), items)
         return
-    worker = _Worker(make)
     under_way = 0
     try:
         for item in items:
@@ -48,6 +50,14 @@ def mapped(
         worker.stop()
 
 
+def _started(make: Callable[[], Callable[[T], R]]) -> "_Worker | None":
+    """A second process; None where the system grants none."""
+    try:
+        return _Worker(make)
+    except OSError:  # too many processes, too many open files, too little memory
+        return None
+
+
 class _Worker:
     """The second process, as the first one sees it."""
 
@@ -57,7 +67,12 @@ class _Worker:
         self._outbox, outbox = _pipe()
         ours, theirs = (self._inbox, self._outbox), (inbox, outbox)
         self._process = context.Process(target=_serve, args=(make, inbox, outbox, ours), daemon=True)
-        self._process.start()
+        # The new process must not meet a signal before it has said what it makes of it.
+        waiting = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+        try:
+            self._process.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, waiting)
         for end in theirs:
             end.close()
         # Takes results at once, so that the worker never waits for us while we wait for it.
@@ -77,7 +92,10 @@ class _Worker:
         message = self._results.get()
         if message is None:
             self._results.put(None)
-            raise TimemapError("the process that remembers was ended from outside")
+            raise TimemapError(
+                "the process that remembers was ended from outside",
+                hint="look whether the memory was used up: dmesg | grep -i 'out of memory'",
+            )
         result, error = pickle.loads(message)
         if error is not None:
             raise error
@@ -100,8 +118,10 @@ def _serve(
     """Answer each item with its result, or with what went wrong; end when nobody asks or listens any more."""
     for end in others:
         end.close()  # else the pipes would stay open when the first process dies
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process decides
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)  # they come to both processes: the first one decides
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
     with suppress(EOFError, BrokenPipeError):
         try:
             work = make()
@@ -114,7 +134,7 @@ def _serve(
 
 
 def _receive_all(outbox: Connection, results: "SimpleQueue[bytes | None]") -> None:
-    with suppress(EOFError, OSError):  # between two messages, or within one
+    with suppress(EOFError, OSError, MemoryError):  # between two messages, or within one
         while True:
             results.put(outbox.recv_bytes())
     results.put(None)

@@ -15,6 +15,7 @@ START = 1_700_000_000 * SECOND
 NODE = Node(1.0, 2.0)
 LEVELS = ("short", "mid", "long")
 
+NO_REPORT = {"schema": "timemap.report/1", "nodes": 0, "scans": {"read": 0, "used": 0, "dropped": {}}}
 NO_CHANGES = {"schema": "timemap.changes/1", "events": [], "summary": {}}
 
 
@@ -61,7 +62,9 @@ def write(
                     for lv in levels
                 }
                 writer.write_maps(latest, nodes, stamp_ns)
-        writer.finish({"nodes": str(len(nodes))} | (metadata or {}), "seed: 0\n", report or {}, changes)
+        writer.finish(
+            {"nodes": str(len(nodes))} | (metadata or {}), "seed: 0\n", report or NO_REPORT, changes
+        )
     return path
 
 

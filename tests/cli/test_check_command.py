@@ -6,6 +6,9 @@ from tests.cli.program import python, timemap
 from tests.cli.result_files import NODE, all_levels, write
 from tests.conftest import ROOT
 
+BOTH = ["plain.timemap.mcap", "box.timemap.mcap"]
+PLAIN = ["plain.timemap.mcap", "--baseline", "b.yaml"]
+
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
@@ -68,6 +71,18 @@ def test_several_formats_go_to_their_files_and_one_to_stdout(folder):
     assert json.loads((folder / "j.json").read_text())["exit_code"] == 4
 
 
+def test_outputs_give_way_to_newer_ones_and_nothing_else_does(folder):
+    for form in ("text", "json", "junit", "github", "markdown"):
+        (folder / "notes").write_text("mine")
+        assert timemap("check", *PLAIN, "--format", f"{form}=notes").code == 2
+        assert (folder / "notes").read_text() == "mine"
+        for result, code in (("plain", 0), ("box", 4), ("plain", 0)):
+            ran = timemap(
+                "check", f"{result}.timemap.mcap", "--baseline", "b.yaml", "--format", f"{form}=out.{form}"
+            )
+            assert (ran.code, ran.out, ran.err) == (code, "", "")
+
+
 def test_the_github_format_appends_to_the_summary_of_the_job(folder):
     summary = folder / "summary.md"
     summary.write_text("before\n")
@@ -85,10 +100,6 @@ def test_what_has_no_node_in_common_ends_with_2(folder):
     assert ran.err.startswith("error: nothing can be compared with b.yaml: they have no node in common\n")
 
 
-BOTH = ["plain.timemap.mcap", "box.timemap.mcap"]
-PLAIN = ["plain.timemap.mcap", "--baseline", "b.yaml"]
-
-
 @pytest.mark.parametrize(
     ("args", "message"),
     [
@@ -101,6 +112,7 @@ PLAIN = ["plain.timemap.mcap", "--baseline", "b.yaml"]
         ([*PLAIN, "--format", "json", "--format", "github"], "standard output takes one format"),
         ([*PLAIN, "--tolerance", "x=1"], "unknown tolerance x in --tolerance"),
         ([*PLAIN, "--suite", "s.yaml"], "plain.timemap.mcap does not go with --suite: s.yaml says it for each"),
+        ([*PLAIN, "--update-baseline", "--format", "json"], "--format does not go with --update-baseline"),
         (["--suite", "s.yaml"], "no suite file s.yaml"),
     ],
 )  # fmt: skip

@@ -21,7 +21,7 @@ def test_a_closed_pipe_ends_quietly():
     assert (ran.returncode, ran.stderr) == (0, b"")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_with_130_and_no_traceback(number):
     code = (
         "import os, sys, click\n"
@@ -68,7 +68,7 @@ def test_closed_streams_change_no_exit_code_and_raise_nothing(args, closed, tmp_
     assert bool(ran.stdout) == (args[0] != "info" and ">&-" not in closed.split())
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize("module", ["click", "timemap_cli.cli.main"])
 def test_a_signal_while_the_program_is_being_imported_ends_with_130(number, module):
     code = (
@@ -108,3 +108,62 @@ def test_an_interrupt_that_python_loses_stops_the_work_at_its_next_step():
     ran = python(code)
     assert (ran.returncode, ran.stdout) == (130, "goes on\n")
     assert ran.stderr.endswith("interrupted\n")
+
+
+def test_a_signal_within_an_exec_of_text_ends_with_130_too(tmp_path):
+    """Python run with -m would end itself by SIGINT."""
+    (tmp_path / "sitecustomize.py").write_text(
+        "import dataclasses, os, signal\n"
+        "whole = dataclasses.dataclass\n"
+        "def interrupted(*args, **kwargs):\n"
+        "    if signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:\n"
+        "        exec('os.kill(os.getpid(), signal.SIGTERM)')\n"
+        "    return whole(*args, **kwargs)\n"
+        "dataclasses.dataclass = interrupted\n"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-m", "timemap_cli", "config"],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "interrupted\n")
+
+
+def test_what_was_said_to_be_ignored_stays_ignored():
+    code = (
+        "import os, signal, sys, click\n"
+        "from timemap_cli.cli import main\n"
+        "@click.command()\n"
+        "def hang_up(): os.kill(os.getpid(), signal.SIGHUP); print('goes on')\n"
+        "main.timemap.add_command(hang_up)\n"
+        "from timemap_cli.cli.entry import run\n"
+        "sys.argv = ['timemap', 'hang-up']\n"
+        "signal.signal(signal.SIGHUP, signal.SIG_IGN)  # nohup\n"
+        "run()\n"
+    )
+    ran = python(code)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "goes on\n", "")
+
+
+def test_signals_that_come_twice_do_not_disturb_the_clearing_up(tmp_path):
+    code = (
+        "import os, signal, sys, click\n"
+        "from pathlib import Path\n"
+        "from timemap_cli.cli import main\n"
+        "from timemap_cli.results.atomic_file import AtomicFile\n"
+        "class Slow(AtomicFile):\n"
+        "    def discard(self): os.kill(os.getpid(), signal.SIGTERM); super().discard(); print('cleared')\n"
+        "@click.command()\n"
+        "def write():\n"
+        f"    with Slow(Path({str(tmp_path / 'out.bin')!r})): os.kill(os.getpid(), signal.SIGTERM)\n"
+        "main.timemap.add_command(write)\n"
+        "from timemap_cli.cli.entry import run\n"
+        "sys.argv = ['timemap', 'write']\n"
+        "run()\n"
+    )
+    ran = python(code)
+    assert (ran.returncode, ran.stdout, ran.stderr.strip()) == (130, "cleared\n", "interrupted")
+    assert list(tmp_path.iterdir()) == []

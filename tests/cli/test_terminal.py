@@ -63,3 +63,32 @@ def test_a_reader_that_went_away_is_no_failure():
         here.result("first")
         here.result("second")
     assert here.stderr.getvalue() == ""
+
+
+ORDERS = "/scan\x1b]0;owned\x07\x9b31m\r\u202e"
+SHOWN = "/scan\\x1b]0;owned\\x07\\x9b31m\\r\\u202e"
+
+
+def test_names_that_would_give_orders_to_the_terminal_are_shown_escaped():
+    here = terminal()
+    here.result(ORDERS)
+    here.warn(ORDERS)
+    here.note(ORDERS)
+    here.error(TimemapError(ORDERS, hint=ORDERS))
+    assert here.stdout.getvalue() == f"{SHOWN}\n"
+    assert here.stderr.getvalue() == f"warning: {SHOWN}\n{SHOWN}\nerror: {SHOWN}\n  try: {SHOWN}\n"
+
+
+def test_a_line_feed_in_a_name_forges_no_line():
+    here = terminal()
+    here.warn("no pose for /scan\nerror: all is lost")
+    here.error(TimemapError("no topic /scan\n  try: rm"))
+    assert here.stderr.getvalue() == (
+        "warning: no pose for /scan\\nerror: all is lost\nerror: no topic /scan\\n  try: rm\n"
+    )
+
+
+def test_letters_of_all_languages_are_left_alone():
+    here = terminal()
+    here.result("/größe\t廊下 \N{ROBOT FACE}\nที่ว่าง")
+    assert here.stdout.getvalue() == "/größe\t廊下 \N{ROBOT FACE}\nที่ว่าง\n"

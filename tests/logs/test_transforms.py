@@ -315,3 +315,15 @@ def test_a_place_that_is_not_on_earth_is_rejected():
     held = buffer(tf("map", "base", [1, 2, 3], [utm_with_zone, [1e9, 0, 0], utm_with_zone]))
     assert held.rejected == 1
     np.testing.assert_allclose(position(held, "map", "base", [2]), [utm_with_zone])
+
+
+def test_there_are_never_more_frames_than_the_bound_and_those_beyond_are_counted(monkeypatch):
+    monkeypatch.setattr("timemap_cli.logs.transforms.MOST_FRAMES", 2)
+    buffer = TransformBuffer()
+    buffer.add(tf("map", "laser", [0, 1], [1, 0, 0]))
+    buffer.add(tf("map", "camera", [0], [1, 0, 0], static=True))
+    buffer.add(tf("map", "third", [0, 1], [1, 0, 0]))
+    buffer.add(tf("map", "laser", [2], [2, 0, 0]))
+    assert (len(buffer), buffer.rejected) == (4, 2)
+    known = buffer.lookup("map", "laser", ns([2]))[1], buffer.lookup("map", "third", ns([0]))[1]
+    assert [bool(one[0]) for one in known] == [True, False]

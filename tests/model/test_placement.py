@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import NO_NODE, Placement
@@ -81,3 +83,29 @@ def test_a_place_that_is_not_finite_has_no_node_and_makes_none():
     placement = Placement(1.0)
     assert assigned(placement, (0.0, 0.0), (math.nan, 0.0), (0.0, math.inf), (5.0, 0.0)) == [0, -1, -1, 1]
     assert placement.nodes == [Node(0.0, 0.0), Node(5.0, 0.0)]
+
+
+def test_there_are_never_more_nodes_than_the_bound_however_far_the_robot_jumps(monkeypatch):
+    monkeypatch.setattr("timemap_cli.model.placement.MOST_NODES", 3)
+    placement = Placement(1.0)
+    jumps = np.array([[0.0, 0.0], [10.0, 0.0], [20.0, 0.0], [30.0, 0.0], [10.2, 0.0], [np.nan, 0.0]])
+    assert placement.assign(jumps).tolist() == [0, 1, 2, NO_NODE, 1, NO_NODE]
+    assert placement.assign(jumps).tolist() == [0, 1, 2, NO_NODE, 1, NO_NODE]
+    assert len(placement.nodes) == 3
+
+
+@given(st.lists(st.tuples(st.integers(-30, 30), st.integers(-30, 30)), max_size=40), st.integers(1, 40))
+def test_each_scan_goes_where_one_after_the_other_would(steps, at_once):
+    """Against the rule written down plainly: the nearest node within the spacing, else a new one."""
+    places = np.array(steps, np.float64).reshape(-1, 2) / 10
+    expected, nodes = [], []
+    for x, y in places.tolist():
+        squares = [(x - a) * (x - a) + (y - b) * (y - b) for a, b in nodes]
+        if not squares or min(squares) > 1.0:
+            nodes.append((x, y))
+            squares.append(0.0)
+        expected.append(squares.index(min(squares)))
+    placement = Placement(1.0)
+    found = [placement.assign(places[i : i + at_once]) for i in range(0, len(places), at_once)]
+    assert [node for some in found for node in some.tolist()] == expected
+    assert [(node.x, node.y) for node in placement.nodes] == nodes

@@ -8,7 +8,11 @@ from timemap_cli.model.nodes import Node
 
 NODES = (NODE, Node(14.5, 2.0))
 HOSTILE = '</script><img src=x onerror="document.title=1">.mcap'
-REPORT = {"scans": {"read": 40, "used": 37, "dropped": {"no_pose": 2, "lost": 1}}}
+REPORT = {
+    "schema": "timemap.report/1",
+    "nodes": 2,
+    "scans": {"read": 40, "used": 37, "dropped": {"no_pose": 2, "lost": 1}},
+}
 INPUTS = [{"name": HOSTILE, "sha256": "0123abcd"}]
 
 

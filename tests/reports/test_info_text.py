@@ -99,3 +99,11 @@ def test_a_topic_whose_scans_cannot_be_read_is_told():
     assert "  /scan     no scan that can be read\n" in info_text(
         replace(INTEL, logs=(replace(LOG, scans=(scan,)),))
     )
+
+
+def test_a_line_feed_in_a_name_forges_no_line():
+    text = info_text(
+        replace(INTEL, logs=(replace(LOG, scans=(replace(SCAN, frame_id="laser'\nA replay would use"),)),))
+    )
+    assert "  /scan     910 scans at 0.299 Hz in 'laser'\\nA replay would use'" in text.splitlines()
+    assert text.splitlines().count("A replay would use") == 1

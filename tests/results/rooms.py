@@ -16,7 +16,12 @@ T0 = 1_700_000_000_123_456_789
 WIDTH, HEIGHT = 6.0, 4.0  # [m] the room's walls: x = 0, x = 6, y = 0, y = 4; an open door in x = 6
 NODES = (Node(1.5, 2.0), Node(3.0, 1.25), Node(4.5, 2.0))
 CONFIG = "seed: 0  # Größe\n"
-REPORT = {"scans": {"read": 12}, "note": "größer"}
+REPORT = {
+    "schema": "timemap.report/1",
+    "nodes": 2,
+    "scans": {"read": 12, "used": 12, "dropped": {}},
+    "note": "größer",
+}
 CHANGES = {"schema": "timemap.changes/1", "events": [], "summary": {"events": 0}}
 
 

@@ -1,4 +1,7 @@
+import errno
+import os
 import resource
+import shutil
 import sys
 from pathlib import Path
 
@@ -128,3 +131,65 @@ def test_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_without_room_is_one_clear_error_and_leaves_nothing(tmp_path, monkeypatch):
+    def full(_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    path = tmp_path / "out.bin"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, "fsync", full)
+    with AtomicFile(path, force=True) as out:
+        out.write(b"new")
+        with pytest.raises(TimemapError, match=r"^cannot write .*out\.bin: no space left on device$"):
+            out.commit()
+    assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("out.bin", b"old")]
+
+
+def test_a_folder_that_vanishes_meanwhile_is_one_clear_error(tmp_path):
+    folder = tmp_path / "stick"
+    folder.mkdir()
+    with AtomicFile(folder / "out.bin") as out:
+        out.write(b"abc")
+        shutil.rmtree(folder)
+        with pytest.raises(TimemapError, match=r"cannot write .*out\.bin: no such file or directory"):
+            out.commit()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_force_a_file_that_appears_at_the_very_last_moment_is_kept(tmp_path, monkeypatch):
+    path = tmp_path / "out.bin"
+    out = AtomicFile(path)
+    out.write(b"mine")
+    looks = out._refuse_existing
+
+    def too_early():
+        looks()
+        if not path.exists():
+            path.write_bytes(b"somebody else's")
+
+    monkeypatch.setattr(out, "_refuse_existing", too_early)
+    with out, pytest.raises(UsageError, match="exists already"):
+        out.commit()
+    assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("out.bin", b"somebody else's")]
+
+
+def test_a_file_system_without_hard_links_will_do(tmp_path, monkeypatch):
+    def refused(*_):
+        raise PermissionError
+
+    monkeypatch.setattr(os, "link", refused)
+    with AtomicFile(tmp_path / "out.bin") as out:
+        out.write(b"abc")
+        out.commit()
+    assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("out.bin", b"abc")]
+
+
+def test_a_write_protected_file_is_kept_with_force_too(tmp_path):
+    path = tmp_path / "out.bin"
+    path.write_bytes(b"old")
+    path.chmod(0o444)
+    with pytest.raises(UsageError, match=r"out\.bin is write-protected"):
+        AtomicFile(path, force=True)
+    assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("out.bin", b"old")]

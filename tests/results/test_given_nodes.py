@@ -43,3 +43,11 @@ def test_a_missing_or_empty_file_is_an_error(tmp_path):
     (tmp_path / "nodes.csv").write_text("x,y\n")
     with pytest.raises(UsageError, match="holds no nodes"):
         read_nodes(tmp_path / "nodes.csv", "map")
+
+
+def test_more_nodes_than_a_map_may_have_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("timemap_cli.results.given_nodes.MOST_NODES", 2)
+    path = tmp_path / "nodes.csv"
+    path.write_text("1,2\n3,4\n5,6\n")
+    with pytest.raises(UsageError, match="holds 3 nodes, a map has 2 at most"):
+        read_nodes(path, "map")

@@ -123,7 +123,7 @@ class Tracker:
         )
 
     def _drop(self, track: Track) -> list[Transition]:
-        self._tracks.remove(track)
+        self._tracks = [one for one in self._tracks if one is not track]
         return [Transition(Turn.DROPPED, track.event())] if track.id is not None else []
 
     def _report(self) -> list[Transition]:

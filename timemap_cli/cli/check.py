@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from timemap_cli.cli import check_outputs as outputs
 from timemap_cli.cli.chosen import HTML, begins_with, title_of
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.progress import ProgressBar
@@ -15,10 +16,9 @@ from timemap_cli.errors import ExitCode, UsageError
 if TYPE_CHECKING:
     from timemap_cli.checking import Check, Updated
     from timemap_cli.checks.snapshot import Snapshot
-    from timemap_cli.checks.verdict import CheckedCase, Verdict
+    from timemap_cli.checks.verdict import Verdict
     from timemap_cli.results.reader import ResultReader
 
-_FORMATS = ("text", "json", "junit", "github", "markdown")
 _USES = "timemap check LOG... --baseline BASELINE.yaml\ntimemap check --suite regression.yaml"
 
 
@@ -75,7 +75,10 @@ def check(
     from timemap_cli.checks.tolerances import parsed
     from timemap_cli.checks.verdict import exit_code_of
 
-    wanted, limits = _wanted(formats), parsed(tolerances)
+    if updates and (formats or html):
+        unused = "--format" if formats else "--html"
+        raise UsageError(f"{unused} does not go with --update-baseline: nothing is checked then", hint=_USES)
+    wanted, limits = outputs.wanted(formats), parsed(tolerances)
     if suite is not None:
         _require_alone(suite, sources, baseline, {**replaying, "html": html})
         from timemap_cli import suite as suites
@@ -92,7 +95,7 @@ def check(
             if updates:
                 return _tell_updated(terminal, [checking.update(one, progress)])
             cases = [checking.check(one, progress, _page_writer(html, one) if html else None)]
-    _tell(terminal, cases, wanted)
+    outputs.tell(terminal, cases, wanted)
     return exit_code_of(cases)
 
 
@@ -139,53 +142,6 @@ def _require_alone(
     given += [f"--{name}" for name, value in replaying.items() if value]
     if given:
         raise UsageError(f"{given[0]} does not go with --suite: {suite} says it for each check", hint=_USES)
-
-
-def _wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
-    """Formats and the files they go to; None is standard output, which takes one at most."""
-    wanted: list[tuple[str, Path | None]] = []
-    for word in formats or ("text",):
-        name, _, file = word.partition("=")
-        if name not in _FORMATS:
-            raise UsageError(f"unknown format {name}", hint=f"one of {', '.join(_FORMATS)}")
-        wanted.append((name, Path(file) if file else None))
-    if sum(file is None for _, file in wanted) > 1:
-        raise UsageError("standard output takes one format", hint="--format junit=junit.xml --format github")
-    return wanted
-
-
-def _tell(
-    terminal: Terminal, cases: "Sequence[CheckedCase]", wanted: Sequence[tuple[str, Path | None]]
-) -> None:
-    for case in cases:
-        for warning in case.warnings:
-            terminal.warn(warning)
-    for form, file in wanted:
-        text = _formatted(form, cases)
-        if file is None:
-            terminal.result(text)
-        else:
-            file.write_text(text, encoding="utf-8")
-        if form == "github" and (summary := terminal.variables.get("GITHUB_STEP_SUMMARY")):
-            with Path(summary).open("a", encoding="utf-8") as stream:
-                stream.write(_formatted("markdown", cases) + "\n")
-
-
-def _formatted(form: str, cases: "Sequence[CheckedCase]") -> str:
-    from timemap_cli.reports.check_github import check_github
-    from timemap_cli.reports.check_json import check_json
-    from timemap_cli.reports.check_junit import check_junit
-    from timemap_cli.reports.check_markdown import check_markdown
-    from timemap_cli.reports.check_text import check_text
-
-    writers = {
-        "text": check_text,
-        "json": check_json,
-        "junit": check_junit,
-        "github": check_github,
-        "markdown": check_markdown,
-    }
-    return writers[form](cases)
 
 
 def _tell_updated(terminal: Terminal, done: "Sequence[Updated]") -> ExitCode:

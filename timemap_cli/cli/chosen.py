@@ -23,13 +23,14 @@ def title_of(result: Path) -> str:
     return result.name.removesuffix(".mcap").removesuffix(".timemap")
 
 
-def begins_with(head: bytes) -> Callable[[Path], bool]:
+def begins_with(*heads: bytes) -> Callable[[Path], bool]:
     """Whether a file is of a kind, told by its first bytes in small letters: only such a file may give way."""
 
     def is_one(path: Path) -> bool:
         if not path.is_file():  # opening a pipe would wait for somebody to write
             return False
         with path.open("rb") as file:
-            return file.read(len(head)).lower() == head.lower()
+            begin = file.read(max(map(len, heads))).lower()
+        return any(begin.startswith(head.lower()) for head in heads)
 
     return is_one

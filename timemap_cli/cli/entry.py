@@ -3,31 +3,38 @@
 import os
 import signal
 import sys
+import time
+from contextlib import suppress
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_CLEARING_UP_S = 1.0  # no second interrupt within it: `timeout` and a closing terminal send theirs twice
 
 
 class Interrupts:
-    """Ctrl-C and SIGTERM, as a KeyboardInterrupt that is remembered.
+    """Ctrl-C, SIGTERM and SIGHUP, as a KeyboardInterrupt that is remembered.
 
     Python loses an exception that arises where it cannot be raised, as in a destructor: whoever works for long
     asks now and then.
     """
 
     def __init__(self) -> None:
-        self._seen = False
+        self._seen_at: float | None = None
 
     def listen(self) -> None:
-        """Catch both from now on; Ctrl-C stays ignored where the shell said so."""
-        if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-            signal.signal(signal.SIGINT, self._interrupt)
-        signal.signal(signal.SIGTERM, self._interrupt)
+        """Catch them from now on; what the shell or `nohup` said to ignore stays ignored."""
+        for number in _SIGNALS:
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, self._interrupt)
 
     def were_seen(self) -> bool:
         """Whether one has come."""
-        return self._seen
+        return self._seen_at is not None
 
     def _interrupt(self, _signal: int, _frame: object) -> None:
-        self._seen = True
-        raise KeyboardInterrupt
+        now = time.monotonic()
+        if self._seen_at is None or now - self._seen_at > _CLEARING_UP_S:
+            self._seen_at = now
+            raise KeyboardInterrupt
 
 
 def run() -> None:
@@ -41,9 +48,14 @@ def run() -> None:
 
         code = main(sys.argv[1:], Terminal(is_interrupted=interrupts.were_seen))
     except KeyboardInterrupt:  # outside of main: while it was being imported
-        print("interrupted", file=sys.stderr)  # noqa: T201
+        with suppress(OSError):  # the terminal may be gone
+            print("interrupted", file=sys.stderr)  # noqa: T201
         code = 130
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)  # all is done
+    # Python notes an interrupt that leaves an exec of text, as those within `dataclass`, and with `-m` dies of SIGINT
+    # at its end although it was caught; every exec of text begins by clearing that note.
+    exec("")
     sys.exit(code)
 
 

@@ -47,6 +47,9 @@ def main(args: Sequence[str], terminal: Terminal | None = None) -> int:
     except OSError as error:
         terminal.error(TimemapError(_system_trouble(error)))
         return ExitCode.FAILED
+    except MemoryError:
+        terminal.error(TimemapError("there is not enough memory"))
+        return ExitCode.FAILED
     except (KeyboardInterrupt, click.Abort):
         terminal.note("interrupted")
         return ExitCode.INTERRUPTED

@@ -6,15 +6,14 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from pathlib import Path, PurePath
+from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import zstandard
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.logs.bag_file import BagFile
+from timemap_cli.logs.listed_names import listed_names
 from timemap_cli.logs.mcap_file import McapFile
 from timemap_cli.logs.raw import Storage
 from timemap_cli.logs.sqlite_file import SqliteFile
@@ -109,15 +108,16 @@ def _decompressed(path: Path, stack: ExitStack) -> Path:
 def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
     """The storage files of a bag folder, those its metadata names or all where it has none; problems and remarks."""
     try:
-        names = _listed_names(folder / METADATA)
+        names = listed_names(folder / METADATA)
     except FileNotFoundError:
         return _found_files(folder), [], []
-    except (YAMLError, UnicodeDecodeError, KeyError, TypeError):
+    except ValueError:
         return _found_files(folder), [], [f"{METADATA} cannot be read; all files beside it are"]
     paths, problems = [], []
     for name in names:
         # Older rosbag2 names a compressed file without the suffix it gave it.
-        present = [one for one in (folder / name, folder / f"{name}.zstd") if one.exists()]
+        either = (folder / name, folder / f"{name}.zstd")
+        present = [one for one in either if one.is_file() or one.is_dir()]  # opening a pipe would wait
         if present:
             paths.append(present[0])
         else:
@@ -125,11 +125,6 @@ def _files_of_folder(folder: Path) -> tuple[list[Path], list[str], list[str]]:
     if not paths:
         raise UsageError(f"{folder} holds none of the files that its {METADATA} names")
     return paths, problems, []
-
-
-def _listed_names(metadata: Path) -> list[str]:
-    content = YAML(typ="safe").load(metadata.read_text(encoding="utf-8"))
-    return [PurePath(name).name for name in content["rosbag2_bagfile_information"]["relative_file_paths"]]
 
 
 def _found_files(folder: Path) -> list[Path]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from timemap_cli.config import InputSettings
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, as_word
 from timemap_cli.logs.frames import Frames
 from timemap_cli.logs.poses import TF
 
@@ -59,7 +59,7 @@ class Seen:
     def line(self, *options: str) -> str:
         """A command to paste."""
         logs = " ".join(self.logs) if len(self.logs) <= 3 else f"{self.logs[0]} ..."
-        return f"timemap replay {logs} {' '.join(options)}"
+        return f"timemap replay {logs} {' '.join(map(as_word, options))}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,12 +84,13 @@ def scan_candidates(logs: Sequence[str], topics: Mapping[str, str], wanted: Sequ
         if topic not in topics:
             near = get_close_matches(topic, scans, 1) or scans
             raise UsageError(
-                f"no topic {topic} in {where}", hint="\n".join(f"--scan-topic {name}" for name in near)
+                f"no topic {topic} in {where}",
+                hint="\n".join(f"--scan-topic {as_word(name)}" for name in near),
             )
         if topic not in scans:
             raise UsageError(
                 f"{topic} holds {topics[topic]}, not {SCAN_TYPE}",
-                hint="\n".join(f"--scan-topic {name}" for name in scans),
+                hint="\n".join(f"--scan-topic {as_word(name)}" for name in scans),
             )
     return tuple(dict.fromkeys(wanted)) or scans
 
@@ -178,7 +179,7 @@ def _named_pose_topic(seen: Seen, name: str) -> PoseTopic:
     for topic in seen.poses:
         if topic.topic == name:
             return topic
-    known = "\n".join(f"--poses {topic.topic}" for topic in seen.poses) or "--poses tf"
+    known = "\n".join(f"--poses {as_word(topic.topic)}" for topic in seen.poses) or "--poses tf"
     msgtype = seen.topics.get(name)
     if msgtype is None:
         raise UsageError(f"no topic {name} with poses in {', '.join(seen.logs)}", hint=known)
@@ -258,7 +259,7 @@ def _no_poses(
 
 def _what_to_record(frames: Frames, frame: str) -> str:
     if frames and not frames.connected_to(frame) - {frame}:
-        return f"record /tf_static too; it must say where '{frame}' sits on the robot"
+        return f"record /tf_static too; it must say where {frame!r} sits on the robot"
     return "record the transforms from the map to the laser (/tf, /tf_static)"
 
 
@@ -295,5 +296,5 @@ def _what_else(topics: Mapping[str, str]) -> str:
 def _instead(topics: Mapping[str, str]) -> str:
     for topic in sorted(topics):
         if topics[topic] in CLOUD_TYPES:
-            return f"turn {topic} into laser scans first (pointcloud_to_laserscan)"
+            return f"turn {as_word(topic)} into laser scans first (pointcloud_to_laserscan)"
     return "record the topic of the laser scanner together with /tf and /tf_static"

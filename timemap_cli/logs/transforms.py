@@ -22,12 +22,15 @@ from timemap_cli.model.state import State, prefixed, without_prefix
 Rows = NDArray[np.intp]
 Path = tuple[str, ...]
 
+MOST_FRAMES = 10_000  # bounds memory: a hundred robots have as many
+
 
 class TransformBuffer:
     """Transforms between frames over time, forgetting what lies behind.
 
     Frame names have no leading slash. ``rejected`` counts transforms that cannot be used: a
-    rotation of length zero, NaN, a place that cannot be on earth, a frame that is its own parent or has no name.
+    rotation of length zero, NaN, a place that cannot be on earth, a frame that is its own parent or has no name,
+    new frames when there are MOST_FRAMES.
     """
 
     def __init__(self) -> None:
@@ -46,7 +49,8 @@ class TransformBuffer:
 
         A frame that has both hangs on its static edge until its first moving sample, then on the moving one.
         """
-        if not batch.child or not batch.parent or batch.child == batch.parent:
+        names_nothing = not batch.child or not batch.parent or batch.child == batch.parent
+        if names_nothing or self._is_one_too_many(batch.child):
             self.rejected += len(batch.stamps_ns)
             return
         good, rotation = usable(batch.translation, batch.rotation)
@@ -59,6 +63,10 @@ class TransformBuffer:
             self._static[batch.child] = parent, from_translation_rotation(translation[-1:], rotation[-1:])
         else:
             self._moving[batch.child].add(batch.stamps_ns[good], translation, rotation, parent)
+
+    def _is_one_too_many(self, child: str) -> bool:
+        is_new = child not in self._static and child not in self._moving
+        return is_new and len(self._static) + len(self._moving) >= MOST_FRAMES
 
     def lookup(self, target: str, source: str, stamps_ns: Int64s) -> tuple[Float64s, Bools]:
         """Return ``target_from_source`` (n, 3, 4) at the stamps (n,), and where (n,) it is known.

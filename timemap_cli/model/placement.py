@@ -11,6 +11,8 @@ Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
 NO_NODE = -1
+_PAIRS_AT_ONCE = 1 << 20  # bounds the memory
+MOST_NODES = 10_000  # bounds the memory; the aisles of a hall of 100 m by 100 m need half of them
 
 
 class Placement:
@@ -34,26 +36,40 @@ class Placement:
     def assign(self, places: Floats) -> Ints:
         """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order.
 
-        NO_NODE if none is near, or the place is not finite.
+        NO_NODE if none is near and none may be made: all are given, there are MOST_NODES, or the place is not finite.
         """
-        chosen = np.full(len(places), NO_NODE)
+        chosen, squared = self._nearest(places)
+        finite = np.asarray(np.isfinite(places).all(axis=1))
         start = 0
-        while start < len(places):
-            nearest, near = self._nearest(places[start:])
-            chosen[start:] = np.where(near, nearest, NO_NODE)
-            far = np.flatnonzero(~near & np.isfinite(places[start:]).all(axis=1))
-            if self.all_given or not len(far):
+        while not self.all_given and len(self.nodes) < MOST_NODES:
+            far = np.flatnonzero(~(squared[start:] <= self._spacing * self._spacing) & finite[start:])
+            if not len(far):
                 break
             start += int(far[0])
             # whole millimetres: a node's centre is a key of its random numbers
             x, y = (round(value, 3) for value in places[start].tolist())
+            new = _squared_distances(places[start:], np.array([[x, y]]))[:, 0]
+            nearer = start + np.flatnonzero(~(squared[start:] <= new))
+            chosen[nearer], squared[nearer] = len(self.nodes), new[nearer - start]
             self.nodes.append(Node(x, y))
-        return chosen
+        return np.where(squared <= self._spacing * self._spacing, chosen, NO_NODE)
 
-    def _nearest(self, places: Floats) -> tuple[Ints, npt.NDArray[np.bool_]]:
+    def _nearest(self, places: Floats) -> tuple[Ints, Floats]:
+        """Nearest node (n,) of each place and the square of how far it is [m^2]; NO_NODE, inf if there is none."""
+        chosen, squared = np.full(len(places), NO_NODE), np.full(len(places), np.inf)
         if not self.nodes:
-            return np.zeros(len(places), np.int64), np.zeros(len(places), np.bool_)
-        dx, dy = (places[:, None, axis] - self.centres[:, axis] for axis in (0, 1))
-        squared = dx * dx + dy * dy
-        nearest = squared.argmin(axis=1)
-        return nearest, squared[np.arange(len(places)), nearest] <= self._spacing**2
+            return chosen, squared
+        centres = self.centres
+        at_once = max(1, _PAIRS_AT_ONCE // len(centres))
+        for begin in range(0, len(places), at_once):
+            some = _squared_distances(places[begin : begin + at_once], centres)
+            nearest = some.argmin(axis=1)
+            chosen[begin : begin + at_once] = nearest
+            squared[begin : begin + at_once] = some[np.arange(len(some)), nearest]
+        return chosen, squared
+
+
+def _squared_distances(places: Floats, centres: Floats) -> Floats:
+    """(places, centres) [m^2]."""
+    dx, dy = (places[:, None, axis] - centres[:, axis] for axis in (0, 1))
+    return np.asarray(dx * dx + dy * dy)

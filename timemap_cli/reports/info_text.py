@@ -78,7 +78,7 @@ def _outlook(inspection: Inspection) -> list[str]:
     if selection is None:
         message = trouble.message if trouble else "nothing to replay"
         hints = (trouble.hint or "").splitlines() if trouble else []
-        return [f"A replay would stop: {message}", *(f"  try: {hint}" for hint in hints)]
+        return [f"A replay would stop: {_one_line(message)}", *(f"  try: {hint}" for hint in hints)]
     poses = " and ".join(" > ".join(chain) for chain in inspection.chains)
     rows = [
         ("scans", ", ".join(selection.scan_topics)),
@@ -125,8 +125,14 @@ def _list(word: str, sentences: Sequence[str]) -> list[Row]:
 
 
 def _columns(rows: Sequence[Row]) -> list[str]:
-    width = max((len(word) for word, _ in rows), default=0)
-    return [f"  {word.ljust(width)}  {text}" for word, text in rows]
+    shown = [(_one_line(word), _one_line(text)) for word, text in rows]
+    width = max((len(word) for word, _ in shown), default=0)
+    return [f"  {word.ljust(width)}  {text}" for word, text in shown]
+
+
+def _one_line(text: str) -> str:
+    """Names of topics and frames may hold line feeds: what follows one must not look like our own words."""
+    return text.replace("\n", "\\n")
 
 
 def _posed(part: int, whole: int) -> str:

@@ -1,7 +1,6 @@
 """What a page of a result shows, as values that JSON knows."""
 
 import base64
-import json
 import zlib
 from typing import Any
 
@@ -36,7 +35,7 @@ def page_data(reader: ResultReader) -> dict[str, Any]:
         "coverage": _coverage(reader),
         "changes": reader.changes,
         "report": report,
-        "inputs": json.loads(reader.metadata.get("inputs", "[]")),
+        "inputs": reader.inputs,
         "settings": reader.config,
         "made": [
             [name, reader.metadata[name]]

@@ -1,14 +1,14 @@
 """A file that is there whole or not at all."""
 
 import os
-import secrets
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Self
+from typing import Self
 
 from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.results.partial_file import PartialFile, remove_abandoned
 
 
 class AtomicFile:
@@ -16,9 +16,10 @@ class AtomicFile:
 
     It is written beside its place under a hidden name; `commit` puts it there. Leaving the context without
     `commit`, by an exception or Ctrl-C too, removes it. A symbolic link is followed, as the shell does.
+    What a killed program left beside the same path is removed.
 
-    Raises UsageError if the path exists and `force` is not given, if it is a folder or nothing that
-    `may_replace` allows (`replaced` says what that is), or if its folder is missing; TimemapError where the
+    Raises UsageError if the path exists and `force` is not given, if it is a folder, write-protected or nothing
+    that `may_replace` allows (`replaced` says what that is), or if its folder is missing; TimemapError where the
     system refuses to write.
     """
 
@@ -39,11 +40,12 @@ class AtomicFile:
         folder = self._path.parent
         if not folder.is_dir():
             raise UsageError(f"cannot write {path}: there is no folder {folder}", hint=f"mkdir -p {folder}")
-        self._beside = self._path.with_name(f".{self._path.name}.{secrets.token_hex(4)}.part")
+        remove_abandoned(self._path)
         try:
-            self._stream: BinaryIO = self._beside.open("xb", buffering=1 << 20)
+            self._beside = PartialFile(self._path)
         except OSError as error:
             raise self._failure(error) from error
+        self._stream = self._beside.stream
 
     def __enter__(self) -> Self:
         return self
@@ -69,9 +71,9 @@ class AtomicFile:
         try:
             self._stream.flush()
             os.fsync(self._stream.fileno())
-            self._stream.close()
             self._refuse_existing()
-            self._beside.replace(self._path)
+            self._take_place()
+            self._stream.close()
             _sync_folder(self._path.parent)
         except OSError as error:
             raise self._failure(error) from error
@@ -80,7 +82,19 @@ class AtomicFile:
         """Remove what was written, unless it was committed."""
         with suppress(OSError):  # a full disk refuses the last bytes again; they are not wanted
             self._stream.close()
-        self._beside.unlink(missing_ok=True)
+        self._beside.remove()
+
+    def _take_place(self) -> None:
+        """Give the file its name; without `force` only if nothing has that name, whoever writes at the same time."""
+        if not self._force:
+            try:
+                return os.link(self._beside.path, self._path)  # unlike a renaming it never replaces
+            except FileExistsError:
+                self._refuse_existing()
+            except OSError:  # a file system without hard links
+                pass
+        self._beside.path.replace(self._path)
+        return None
 
     def _refuse_existing(self) -> None:
         if self._path.is_dir():
@@ -95,6 +109,10 @@ class AtomicFile:
         if not self._force:
             raise UsageError(
                 f"{self._named} exists already", hint="--force replaces it, -o FILE writes somewhere else"
+            )
+        if not self._path.stat().st_mode & 0o222:
+            raise UsageError(
+                f"{self._named} is write-protected: it is not replaced", hint=f"chmod u+w {self._named}"
             )
 
     def _failure(self, error: OSError) -> TimemapError:

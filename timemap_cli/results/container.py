@@ -13,11 +13,14 @@ from mcap.reader import SeekingReader
 from mcap.records import Chunk, ChunkIndex
 from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
 from mcap.summary import Summary
-from zstandard import ZstdError
+from zstandard import ZstdError, frame_content_size
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.results import channels
 
+_MOST_BYTES = (
+    1 << 28
+)  # of a chunk, unpacked: the largest messages, points of 10,000 nodes, are a quarter of it
 _MAGIC = b"\x89MCAP0\r\n"
 _RECORDINGS = (_MAGIC, b"#ROSBAG", b"SQLite format 3\x00")
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
@@ -68,7 +71,7 @@ class ResultFile:
         """Text of an attachment."""
         for attachment in self._guarded(lambda: list(self._reader.iter_attachments())):
             if attachment.name == name:
-                return attachment.data.decode()
+                return self._guarded(attachment.data.decode)
         raise self._damaged(f"{name} is missing")
 
     def messages(self, topics: Collection[str], until_ns: int | None = None) -> Iterator[tuple[str, bytes]]:
@@ -77,7 +80,7 @@ class ResultFile:
         end_ns = self.span_ns[1] if until_ns is None else until_ns
         for chunk in self._chunks_with(wanted):
             if chunk.message_start_time <= end_ns:
-                yield from self._messages_of(chunk, wanted, end_ns)
+                yield from ((topic, data) for topic, _, data in self._messages_of(chunk, wanted, end_ns))
 
     def count(self, topic: str) -> int:
         """How many messages a topic has."""
@@ -86,14 +89,16 @@ class ResultFile:
 
     def times_ns(self, topic: str) -> tuple[int, ...]:
         """Log times of the messages of a topic, in order."""
-        return self._guarded(lambda: tuple(m.log_time for _, _, m in self._reader.iter_messages([topic])))
+        wanted, end_ns = self._channels_of([topic]), self.span_ns[1]
+        found = (self._messages_of(chunk, wanted, end_ns) for chunk in self._chunks_with(wanted))
+        return tuple(log_ns for some in found for _, log_ns, _ in some)
 
     def last_message(self, topic: str) -> bytes | None:
         """The last message of a topic, found from the end of the file; None if there is none."""
         wanted = self._channels_of([topic])
         for chunk in reversed(self._chunks_with(wanted)):
             if found := self._messages_of(chunk, wanted, self.span_ns[1]):
-                return found[-1][1]
+                return found[-1][2]
         return None
 
     def _channels_of(self, topics: Collection[str]) -> dict[int, str]:
@@ -106,13 +111,17 @@ class ResultFile:
 
     def _messages_of(
         self, index: ChunkIndex, wanted: Mapping[int, str], end_ns: int
-    ) -> list[tuple[str, bytes]]:
+    ) -> list[tuple[str, int, bytes]]:
         return self._guarded(lambda: list(_messages(self._load(index), wanted, end_ns)))
 
     def _load(self, index: ChunkIndex) -> bytes:
         """A chunk, unpacked and checked."""
         self._stream.seek(index.chunk_start_offset + _RECORD.size)
         chunk = Chunk.read(ReadDataStream(self._stream))
+        # The frame's own claim counts for the memory that is taken; -1 where it makes none.
+        claimed = frame_content_size(chunk.data) if chunk.compression == "zstd" else len(chunk.data)
+        if max(claimed, chunk.uncompressed_size) > _MOST_BYTES:
+            raise ValueError("a chunk that no replay writes")
         data, size = get_chunk_data_stream(chunk, validate_crc=True)
         return data.read(size)
 
@@ -159,8 +168,8 @@ def is_result(path: Path) -> bool:
     return True
 
 
-def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[tuple[str, bytes]]:
-    """Messages of some channels in an unpacked chunk, found by stepping from record to record."""
+def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[tuple[str, int, bytes]]:
+    """Topic, log time and bytes of the messages of some channels in an unpacked chunk, from record to record."""
     place = 0
     while place < len(chunk):
         opcode, length = _RECORD.unpack_from(chunk, place)
@@ -168,7 +177,7 @@ def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[
         if opcode == Opcode.MESSAGE:
             channel, _, log_ns, _ = _MESSAGE.unpack_from(chunk, place)
             if channel in wanted and log_ns <= end_ns:
-                yield wanted[channel], chunk[place + _MESSAGE.size : place + length]
+                yield wanted[channel], log_ns, chunk[place + _MESSAGE.size : place + length]
         place += length
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.placement import MOST_NODES
 from timemap_cli.results.reader import ResultReader
 
 _FORM = "one line `x, y` in metres of the map frame for each node"
@@ -14,9 +15,16 @@ _MCAP_MAGIC = b"\x89MCAP"
 def read_nodes(path: Path, map_frame: str) -> tuple[Node, ...]:
     """Nodes of an earlier result, or of a text file with lines `x, y` or `x y` [m, map frame]; `x, y` may come first.
 
-    What follows a `#` is no part of a line. UsageError where there is no such file, no node in it, two at the same
-    place, or a result in another frame than `map_frame`; TimemapError where it cannot be read.
+    What follows a `#` is no part of a line. UsageError where there is no such file, no node in it, more than there
+    may be, two at the same place, or a result in another frame than `map_frame`; TimemapError where it cannot be read.
     """
+    nodes = _read(path, map_frame)
+    if len(nodes) > MOST_NODES:
+        raise UsageError(f"{path} holds {len(nodes)} nodes, a map has {MOST_NODES} at most", hint=_FORM)
+    return nodes
+
+
+def _read(path: Path, map_frame: str) -> tuple[Node, ...]:
     try:
         data = path.read_bytes() if path.is_file() else None
     except OSError as error:

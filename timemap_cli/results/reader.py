@@ -1,22 +1,29 @@
 """Reads a result back: nodes, settings, and the estimates of one level at one time."""
 
-import json
+import re
 import struct
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+import numpy as np
+
 from timemap_cli.errors import TimemapError
+from timemap_cli.model.elementary import distance
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 from timemap_cli.results import channels
 from timemap_cli.results.channels import LevelTopic
 from timemap_cli.results.container import ResultFile
+from timemap_cli.results.documents import check_changes, check_inputs, check_report, parsed
 from timemap_cli.results.layouts import frame_of, unpack_estimate
 from timemap_cli.results.messages import unpack_nodes
 from timemap_cli.results.state_messages import FORMAT as STATE_FORMAT
 from timemap_cli.results.state_messages import StatePart, unpack_state
+
+_MOST_BINS = 3600  # what settings allow
+_FARTHEST_M = 1e9
 
 
 class ResultReader:
@@ -35,6 +42,7 @@ class ResultReader:
             self.levels = tuple(self.metadata["levels"].split(","))
             self.angle_bins = int(self.metadata["angle_bins"])
             self.radius = float(self.metadata["radius"])  # [m]
+            self._check_dimensions()
             self.map_frame = self.metadata["map_frame"]
             self.start_ns, self.end_ns = self._file.span_ns
             self.nodes = self._read_nodes()
@@ -65,14 +73,28 @@ class ResultReader:
     @property
     def report(self) -> dict[str, Any]:
         """The report of the replay."""
-        report: dict[str, Any] = json.loads(self._file.attachment(channels.REPORT))
-        return report
+        try:
+            return check_report(parsed(self._file.attachment(channels.REPORT)))
+        except ValueError as error:
+            raise self._unreadable() from error
 
     @property
     def changes(self) -> dict[str, Any]:
         """The change events of the replay, schema timemap.changes/1."""
-        changes: dict[str, Any] = json.loads(self._file.attachment(channels.CHANGES))
-        return changes
+        try:
+            return check_changes(
+                parsed(self._file.attachment(channels.CHANGES)), self.levels, len(self.nodes)
+            )
+        except ValueError as error:
+            raise self._unreadable() from error
+
+    @property
+    def inputs(self) -> list[dict[str, str]]:
+        """Name and SHA-256 of each recording; none where the result does not tell."""
+        try:
+            return check_inputs(parsed(self.metadata.get("inputs", "[]")))
+        except ValueError as error:
+            raise self._unreadable() from error
 
     @property
     def recording_ends_ns(self) -> tuple[int, ...]:
@@ -97,12 +119,11 @@ class ResultReader:
             raise KeyError(level)
         scans, statuses = LevelTopic.SCAN.of(level), LevelTopic.STATUS.of(level)
         newest: dict[str, dict[str, bytes]] = {scans: {}, statuses: {}}  # by topic and frame
-        for topic, message in self._file.messages(newest.keys(), until_ns):
-            newest[topic][frame_of(message)] = message
         try:
+            for topic, message in self._file.messages(newest.keys(), until_ns):
+                newest[topic][frame_of(message)] = message
             found = [
-                unpack_estimate(scan, newest[statuses][frame], level, self.angle_bins)
-                for frame, scan in newest[scans].items()
+                self._estimate(scan, newest[statuses][frame], level) for frame, scan in newest[scans].items()
             ]
         except (KeyError, ValueError) as error:
             raise self._unreadable() from error
@@ -117,7 +138,7 @@ class ResultReader:
                 if topic == scans:
                     scan = message
                 else:  # the status follows its scan
-                    estimate = unpack_estimate(scan, message, level, self.angle_bins)
+                    estimate = self._estimate(scan, message, level)
                     yield estimate.stamp_ns, estimate
         except ValueError as error:
             raise self._unreadable() from error
@@ -136,12 +157,32 @@ class ResultReader:
         except (ValueError, TypeError, struct.error) as error:
             raise self._unreadable() from error
 
+    def _estimate(self, scan: bytes, status: bytes, level: str) -> Estimate:
+        """The estimate in two messages; ValueError where it is none that a replay writes."""
+        estimate = unpack_estimate(scan, status, level, self.angle_bins)
+        ranges = estimate.ranges
+        reach = np.nextafter(np.float32(self.radius), np.float32(np.inf))
+        sound = np.isnan(ranges) | np.isposinf(ranges) | ((ranges >= 0) & (ranges <= reach))
+        shares = np.stack((estimate.support, estimate.plausibility))
+        if estimate.node >= len(self.nodes) or not sound.all() or not ((shares >= 0) & (shares <= 1)).all():
+            raise ValueError("an estimate that cannot be")
+        return estimate
+
+    def _check_dimensions(self) -> None:
+        """ValueError where levels, angle bins or radius are none that settings could have."""
+        names = all(re.fullmatch(r"[a-z][a-z0-9_]*", name) for name in self.levels)
+        distinct = len(set(self.levels)) == len(self.levels)
+        if not (names and distinct and 0 < self.angle_bins <= _MOST_BINS and 0 < self.radius <= _FARTHEST_M):
+            raise ValueError("no levels, angle bins or radius of a map")
+
     def _read_nodes(self) -> tuple[Node, ...]:
         """The nodes of the last message that places them: it holds all."""
         message = self._file.last_message(channels.TF_STATIC)
         nodes = unpack_nodes(message) if message else ()
         if len(nodes) != int(self.metadata["nodes"]):
             raise ValueError("nodes are missing")
+        if not all(distance(node.x, node.y) <= _FARTHEST_M for node in nodes):
+            raise ValueError("a node that is not on earth")
         return nodes
 
     def _check_format(self) -> None:

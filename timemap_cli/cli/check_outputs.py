@@ -1,0 +1,80 @@
+"""Where the verdict of a check goes: formats on standard output, in files, and in the summary of a GitHub job."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from timemap_cli.cli.chosen import begins_with
+from timemap_cli.cli.terminal import Terminal
+from timemap_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from timemap_cli.checks.verdict import CheckedCase
+
+Output = tuple[str, Path | None]  # format, and the file it goes to; None: standard output
+
+_HEADS = {  # each format, and how a file of it begins
+    "text": (b"passed ", b"failed ", b"error "),
+    "json": (b'{\n  "schema": "timemap.check/',),
+    "junit": (b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="timemap check"',),
+    "github": (b"::notice ", b"::warning ", b"::error "),
+    "markdown": (b"### ",),
+}
+
+
+def wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
+    """Formats and the files they go to; None is standard output, which takes one at most."""
+    found: list[Output] = []
+    for word in formats or ("text",):
+        name, _, file = word.partition("=")
+        if name not in _HEADS:
+            raise UsageError(f"unknown format {name}", hint=f"one of {', '.join(_HEADS)}")
+        found.append((name, Path(file) if file else None))
+    if sum(file is None for _, file in found) > 1:
+        raise UsageError("standard output takes one format", hint="--format junit=junit.xml --format github")
+    return found
+
+
+def tell(
+    terminal: Terminal, cases: "Sequence[CheckedCase]", wanted: Sequence[tuple[str, Path | None]]
+) -> None:
+    """Say every verdict in each of the formats wanted; warnings of the replays go to stderr."""
+    for case in cases:
+        for warning in case.warnings:
+            terminal.warn(warning)
+    for form, file in wanted:
+        text = _formatted(form, cases)
+        if file is None:
+            terminal.result(text)
+        else:
+            _write(file, form, text)
+        if form == "github" and (summary := terminal.variables.get("GITHUB_STEP_SUMMARY")):
+            with Path(summary).open("a", encoding="utf-8") as stream:
+                stream.write(_formatted("markdown", cases) + "\n")
+
+
+def _write(path: Path, form: str, text: str) -> None:
+    """Write what a check says into a file of its own, in place of what an earlier check said there."""
+    from timemap_cli.results.atomic_file import AtomicFile
+
+    may_replace = begins_with(*_HEADS[form])
+    with AtomicFile(path, force=True, may_replace=may_replace, replaced=f"the {form} of a check") as file:
+        file.write((text.rstrip("\n") + "\n").encode())
+        file.commit()
+
+
+def _formatted(form: str, cases: "Sequence[CheckedCase]") -> str:
+    from timemap_cli.reports.check_github import check_github
+    from timemap_cli.reports.check_json import check_json
+    from timemap_cli.reports.check_junit import check_junit
+    from timemap_cli.reports.check_markdown import check_markdown
+    from timemap_cli.reports.check_text import check_text
+
+    writers = {
+        "text": check_text,
+        "json": check_json,
+        "junit": check_junit,
+        "github": check_github,
+        "markdown": check_markdown,
+    }
+    return writers[form](cases)
