@@ -42,7 +42,13 @@ def test_the_defaults_are_those_that_served_best_on_real_recordings():
         ("long", 100, "200obs"),
     ]
     assert settings.gate == GateSettings(
-        min_travel=0.05, min_turn_deg=5.0, min_interval_s=0.15, max_contradiction=0.75
+        min_travel=0.05,
+        min_turn_deg=5.0,
+        min_interval_s=0.15,
+        max_contradiction=0.75,
+        max_position_std=0.5,
+        max_yaw_std_deg=20.0,
+        max_jump=0.5,
     )
     assert settings.estimate.every == Span(30.0, "s")
     assert settings.input == InputSettings((), "map", "auto", "auto", 0.05)
@@ -99,7 +105,8 @@ def test_an_unknown_key_names_the_nearest_known_one(overrides, unknown, nearest)
 def test_an_unknown_key_far_from_all_others_lists_those_of_its_place():
     assert (
         refusal({"gate": {"qqqq": 1}}).hint
-        == "one of min_travel, min_turn_deg, min_interval, max_contradiction"
+        == "one of min_travel, min_turn_deg, min_interval, max_contradiction, max_position_std, max_yaw_std_deg, "
+        "max_jump"
     )
 
 
@@ -120,6 +127,9 @@ def test_a_file_is_named_in_what_is_said_about_it(tmp_path):
         ("gate", "min_travel", 0.0, 100.0, " m"),
         ("gate", "min_turn_deg", 0.0, 180.0, " deg"),
         ("gate", "max_contradiction", 0.5, 1.0, ""),
+        ("gate", "max_position_std", 0.0, 1000.0, " m"),
+        ("gate", "max_yaw_std_deg", 0.0, 360.0, " deg"),
+        ("gate", "max_jump", 0.0, 1000.0, " m"),
         ("input", "max_dropped", 0.0, 1.0, ""),
     ],
 )
@@ -222,7 +232,7 @@ def test_the_paper_profile_has_the_numbers_of_the_paper_no_gate_and_no_guard():
     settings = load(None, {"profile": "paper"})
     assert settings.map.angle_bins == 360
     assert settings.map.range_bin * 20 == pytest.approx(settings.map.radius) == 1.5
-    assert settings.gate == GateSettings(0.0, 0.0, 0.0, max_contradiction=1.0)
+    assert settings.gate == GateSettings(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     assert settings.profile == "paper"
 
 

@@ -19,6 +19,9 @@ def test_default_numbers_in_a_file_override_those_of_the_paper(tmp_path):
         "gate.min_turn_deg 5.0 instead of 0.0",
         "gate.min_interval 0.15s instead of 0s",
         "gate.max_contradiction 0.75 instead of 1.0",
+        "gate.max_position_std 0.5 instead of 0.0",
+        "gate.max_yaw_std_deg 20.0 instead of 0.0",
+        "gate.max_jump 0.5 instead of 0.0",
     ]
 
 

@@ -115,13 +115,15 @@ def test_the_wean_runs_resumed_are_the_runs_in_one_go(tmp_path):
 
 
 def test_a_resumed_result_holds_the_whole_map_and_only_its_own_time(tmp_path):
-    first, second = (standing_log(tmp_path / f"{n}.mcap", start_ns=n * 200 * DAY_NS) for n in (1, 2))
+    first, second = (
+        standing_log(tmp_path / f"{n}.mcap", n_scans=900, start_ns=n * 200 * DAY_NS) for n in (1, 2)
+    )
     one = replay([first], tmp_path / "one.timemap.mcap", SETTINGS)
     two = replay([second], tmp_path / "two.timemap.mcap", SETTINGS, resume=one.result)
-    assert (two.scans_read, two.scans_used, dict(two.dropped)) == (100, 100, {})
+    assert (two.scans_read, two.scans_used, dict(two.dropped)) == (900, 900, {})
     assert not any("Foxglove" in warning for warning in two.warnings)
     with ResultReader(two.result) as result:
-        assert 400 * DAY_NS <= result.start_ns <= result.end_ns < 400 * DAY_NS + 11 * 10**9
+        assert 400 * DAY_NS <= result.start_ns <= result.end_ns < 400 * DAY_NS + 91 * 10**9
         assert set(result.estimates("long", result.start_ns)) == {0}
         assert result.metadata["resumed_from"].startswith('{"name": "one.timemap.mcap", "sha256": "')
 

@@ -69,6 +69,15 @@ class GateSettings:
     max_contradiction: float = setting(
         0.75, Number(0.5, 1.0), "a scan that contradicts so much of a place is of a lost robot; 1: off"
     )
+    # amcl starts from 0.5 m and 15 deg, and is far below that once it tracks.
+    max_position_std: float = setting(
+        0.5, Number(0.0, 1000.0, "m"), "a scan whose pose is less certain is not learnt; 0: off"
+    )
+    max_yaw_std_deg: float = setting(20.0, Number(0.0, 360.0, "deg"), "as max_position_std, of its yaw")
+    # Corrections of a localiser that tracks stay below 0.2 m.
+    max_jump: float = setting(
+        0.5, Number(0.0, 1000.0, "m"), "scans within a larger jump of the pose are not learnt; 0: off"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +224,15 @@ def _defaults(profile: str) -> Settings:
         return Settings()
     return Settings(
         map=MapSettings(angle_bins=360, range_bin=0.075, radius=1.5),
-        gate=GateSettings(min_travel=0.0, min_turn_deg=0.0, min_interval_s=0.0, max_contradiction=1.0),
+        gate=GateSettings(
+            min_travel=0.0,
+            min_turn_deg=0.0,
+            min_interval_s=0.0,
+            max_contradiction=1.0,
+            max_position_std=0.0,
+            max_yaw_std_deg=0.0,
+            max_jump=0.0,
+        ),
         profile=profile,
     )
 

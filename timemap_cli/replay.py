@@ -14,6 +14,7 @@ from timemap_cli.config import Settings, dump, settings_hash
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.beams import BeamCounts
 from timemap_cli.logs.fingerprint import sha256
+from timemap_cli.logs.pose_quality import JUMP, UNCERTAIN
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.learner import Kept
@@ -75,20 +76,22 @@ def replay(
     began = time.perf_counter()
     with ExitStack() as stack:
         earlier = _earlier(resume, settings)
+        if earlier is not None:
+            stack.enter_context(earlier.damage_told())
         recordings = [stack.enter_context(recording) for recording in open_recordings(logs)]
         plan = _surveyed(recordings, settings, earlier)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        observer, tracker = assembly.observer(settings, given), assembly.tracker(settings)
-        observing = Observing(recordings, plan, observer, earlier.reading if earlier else None)
-        writing = Writing(result, tracker)
-        learning = partial(assembly.learner, settings, given)
-        if earlier is not None:
-            writing.restore(earlier.parts(), observer.nodes)
-            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
+        observing = Observing(recordings, plan, assembly.observer(settings, given))
+        writing = Writing(result, assembly.tracker(settings))
         start_ns, end_ns = _span_ns(plan, start, end)
         if earlier is not None:
             earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+            observing.restore(earlier.reading)
+            writing.restore(earlier.parts(), observing.nodes)
+        learning = partial(assembly.learner, settings, given)
+        if earlier is not None:
+            learning = partial(assembly.learner, settings, earlier.nodes, earlier.learnt)
         steps = observing.steps(start_ns, end_ns)
         for answer in stack.enter_context(closing(mapped(learning, steps))):
             if isinstance(answer, Kept):
@@ -118,7 +121,7 @@ def _earlier(resume: Path | None, settings: Settings) -> Earlier | None:
 def _surveyed(recordings: Sequence[Recording], settings: Settings, earlier: Earlier | None) -> Survey:
     if earlier is None:
         return survey(recordings, settings)
-    return survey(recordings, earlier.settings_to_read_by(), earlier.known)
+    return survey(recordings, earlier.to_read_by, earlier.known)
 
 
 def _result(output: Path, settings: Settings, plan: Survey, *, force: bool) -> ResultWriter:
@@ -223,6 +226,14 @@ def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:
         yield (
             f"{lost} scans contradict nearly all that their place has long been and were set aside: the robot was "
             "lost, or the place is another one now (to learn them at once: gate.max_contradiction: 1)"
+        )
+    dropped = observing.counts.dropped
+    if doubtful := {reason: dropped[reason] for reason in (UNCERTAIN, JUMP) if dropped.get(reason)}:
+        reasons = ", ".join(f"{reason} {count}" for reason, count in doubtful.items())
+        yield (
+            f"{sum(doubtful.values())} scans were set aside because their pose cannot be trusted ({reasons}); "
+            "timemap info tells how uncertain the poses are, gate.max_position_std, max_yaw_std_deg and max_jump "
+            "are the limits"
         )
     if len(observing.nodes) >= MOST_NODES and observing.counts.dropped.get("no_node"):
         yield f"the map has {MOST_NODES} nodes, the most there may be: scans far from all were dropped (no_node)"

@@ -1,6 +1,7 @@
 """Going on where an earlier replay stopped: its settings, what it chose to read, and all that it kept."""
 
 from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from timemap_cli.results.reader import ResultReader
 from timemap_cli.results.state_messages import Part, StatePart
 from timemap_cli.times import format_time
 
+# What taking over arrays of other shapes, and texts in the place of numbers, raises.
+_MISFITS = (ArithmeticError, AttributeError, LookupError, RuntimeError, StopIteration, TypeError, ValueError)
 _MAY_DIFFER = ("input.max_dropped",)  # it changes nothing that is remembered
 
 
@@ -29,6 +32,8 @@ class Earlier:
     settings: Settings
     reading: State  # what is of the recordings, their scans and poses
     nodes: tuple[Node, ...]  # all that the earlier replay made, also those that nothing was learnt of
+    known: Known  # what was found out about the recordings so far
+    to_read_by: Settings  # with what the earlier replay chose to read, so that this one chooses the same
 
     @classmethod
     def of(cls, path: Path) -> "Earlier":
@@ -36,13 +41,22 @@ class Earlier:
 
         UsageError where it is missing or none, TimemapError where it is damaged or cannot be resumed.
         """
-        with ResultReader(path) as result:
+        with ResultReader(path) as result, _damage_told(path):
             settings = loads(result.config, f"the settings of {path}")
-            reading = next((kept.state for kept in result.state() if kept.part is Part.READING), None)
-        if reading is None:
-            raise TimemapError(f"{path} does not hold what a replay needs to go on")
-        nodes = tuple(Node(x, y) for x, y in reading["observer.nodes"].tolist())
-        return cls(path, settings, reading, nodes)
+            reading = next(kept.state for kept in result.state() if kept.part is Part.READING)
+            nodes = tuple(Node(x, y) for x, y in reading["observer.nodes"].tolist())
+            found = {topic: MissingReturns(*one) for topic, one in reading["missing_so_far"].items()}
+            static = StaticTransforms.of((), without_prefix("stream.static", reading))
+            return cls(
+                path, settings, reading, nodes, Known(static.earlier, found), _chosen(settings, reading)
+            )
+
+    def damage_told(self) -> AbstractContextManager[None]:
+        """Inside it, what comes of parts that do not fit together is a TimemapError.
+
+        A sound file says nothing about who wrote it, and what is wrong may show late: where a number is used.
+        """
+        return _damage_told(self.path)
 
     def parts(self) -> Iterator[StatePart]:
         """All that was kept."""
@@ -54,24 +68,6 @@ class Earlier:
         for kept in self.parts():
             if kept.part in (Part.LEARNING, Part.NODE):
                 yield Kept(kept.node if kept.part is Part.NODE else None, kept.state)
-
-    @property
-    def known(self) -> Known:
-        """What was found out about the recordings so far."""
-        static = StaticTransforms.of((), without_prefix("stream.static", self.reading))
-        found = self.reading["missing_so_far"]
-        return Known(static.earlier, {topic: MissingReturns(*counted) for topic, counted in found.items()})
-
-    def settings_to_read_by(self) -> Settings:
-        """The settings with what the earlier replay chose to read, so that this one chooses the same."""
-        chosen = self.reading["selection"]
-        wanted = replace(
-            self.settings.input,
-            scan_topics=tuple(chosen["scan_topics"]),
-            map_frame=chosen["map_frame"],
-            poses=chosen["poses"],
-        )
-        return replace(self.settings, input=wanted)
 
     def require_before(self, begin_ns: int) -> None:
         """UsageError for scans that begin earlier than this result ends, by more than may come out of order."""
@@ -85,10 +81,34 @@ class Earlier:
     def require_same(self, settings: Settings) -> None:
         """UsageError for settings that differ from the earlier replay's, by name."""
         other = differing(settings, self.settings)
-        as_chosen = differing(settings, self.settings_to_read_by())
+        as_chosen = differing(settings, self.to_read_by)
         found = [text for name, text in other.items() if name in as_chosen and name not in _MAY_DIFFER]
         if found:
             raise UsageError(
                 f"the settings differ from those of {self.path}: {', '.join(found)}",
                 hint="leave them out: those of the earlier result hold; or replay all recordings in one go",
             )
+
+
+def _chosen(settings: Settings, reading: State) -> Settings:
+    chosen = reading["selection"]
+    wanted = replace(
+        settings.input,
+        scan_topics=tuple(chosen["scan_topics"]),
+        map_frame=chosen["map_frame"],
+        poses=chosen["poses"],
+    )
+    return replace(settings, input=wanted)
+
+
+@contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except TimemapError:
+        raise
+    except _MISFITS as error:
+        raise TimemapError(
+            f"{path} is damaged: what it kept to go on from does not fit together",
+            hint="make it again, or replay all recordings in one go",
+        ) from error

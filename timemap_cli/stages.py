@@ -33,14 +33,7 @@ Ints = npt.NDArray[np.int64]
 class Observing:
     """Reads the recordings and turns their scans into what the nodes see; counts what becomes of every scan."""
 
-    def __init__(
-        self,
-        recordings: Sequence[Recording],
-        plan: Survey,
-        observer: Observer,
-        earlier: State | None = None,
-    ) -> None:
-        """`earlier` is the `state` of a replay that stopped where this one begins."""
+    def __init__(self, recordings: Sequence[Recording], plan: Survey, observer: Observer) -> None:
         self.counts = ScanCounts()
         self.used = 0
         self.newest_ns: int | None = None
@@ -49,10 +42,7 @@ class Observing:
         self._recordings = recordings
         self._plan = plan
         self._observer = observer
-        self._earlier = earlier
-        if earlier is not None:
-            self.newest_ns = earlier["newest_ns"]
-            observer.restore(without_prefix("observer", earlier))
+        self._earlier: State | None = None
 
     @property
     def nodes(self) -> Sequence[Node]:
@@ -68,6 +58,12 @@ class Observing:
     def remarks(self) -> tuple[str, ...]:
         """What is odd about the recordings, while nothing of them is lost."""
         return tuple(f"{r.path}: {remark}" for r in self._recordings for remark in r.remarks)
+
+    def restore(self, earlier: State) -> None:
+        """Go on from the `state` of an earlier replay."""
+        self._earlier = earlier
+        self.newest_ns = earlier["newest_ns"]
+        self._observer.restore(without_prefix("observer", earlier))
 
     def set_aside(self, scans: int) -> None:
         """Take note that so many of the scans seen were not learnt."""
@@ -88,6 +84,7 @@ class Observing:
             start_ns=start_ns,
             end_ns=end_ns,
             drives=plan.drives,
+            limits=plan.pose_limits,
             earlier=None if self._earlier is None else without_prefix("stream", self._earlier),
         )
         # Two scanners in turn, or bearings that differ from scan to scan, make blocks of one scan.

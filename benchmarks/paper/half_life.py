@@ -42,6 +42,7 @@ _IN_SECONDS: tuple[tuple[int, float, _Steps], ...] = (
     (100, 3600.0, (2.0,) * 9 + (86400.0,)),
     (200, 43200.0, (600.0,)),
 )
+_MANY = 25  # samples of a window from which on nodes need not be more
 _YOUNG = Level("young", 100, 277.0)
 _YOUNG_HISTORIES = (30, 100, 180, 230, 300, 370, 550, 1385)
 
@@ -50,7 +51,7 @@ def run(scale: Scale) -> Section:
     """Windows of 7 to 200 samples, half-lives of 5 to 2000 scans and of seconds to half a day."""
     nodes = scale.pick(32, 16)
     cases = list(_cases(scale))
-    found = [[measured(level, steps, seen, nodes) for seen in _VIEWS] for level, steps in cases]
+    found = [[measured(level, steps, seen, _runs(level, nodes)) for seen in _VIEWS] for level, steps in cases]
     young = [(history, *_young(history, nodes)) for history in scale.pick(_YOUNG_HISTORIES, (30, 230))]
     alone = [
         _arrives(level, first_old=first, nodes=nodes) for level in _both(scale) for first in (True, False)
@@ -108,7 +109,10 @@ class _Scene:
         return observed
 
     def scatter(self, surface: int, scans: int) -> None:
-        """Up to so many scans more, of each node another number: not all stand at the same place of a turn."""
+        """Up to so many scans, of each node another number: not all stand at the same place of a turn.
+
+        Some nodes wait meanwhile, which is observed time too: let what is measured begin well after it.
+        """
         shown = np.linspace(0, scans, len(self._nodes)).round().astype(int)
         for node in range(1, len(shown)):
             self.show(surface, int(shown[node] - shown[node - 1]), node)
@@ -117,9 +121,8 @@ class _Scene:
         """Share of what is known that is new, and of the nodes that show it (angle_bins,)."""
         found = estimate(self._memory.recall(self._nodes), STATE_WIDTH)
         shows_new = np.abs(found.ranges.astype(np.int64) - _NEW) < (_OLD - _NEW) // 2
-        known = found.support + 1 - found.plausibility
-        share = np.where(shows_new, found.support, known - found.support)
-        return float(share.sum() / known.sum()), np.asarray(shows_new.mean(axis=0))
+        new = found.known * np.where(shows_new, found.support, 1 - found.support)
+        return float(new.sum() / found.known.sum()), np.asarray(shows_new.mean(axis=0))
 
 
 def measured(level: Level, steps: _Steps, seen: float, nodes: int) -> Ratio:
@@ -128,9 +131,8 @@ def measured(level: Level, steps: _Steps, seen: float, nodes: int) -> Ratio:
     per_scan = float(np.minimum(steps, LONGEST_STEP).mean()) if level.in_seconds else 1.0
     half_life = level.half_life / per_scan  # [scans]
     share = min(1.0, level.places_replaced(per_scan))
-    scene.show(_OLD, math.ceil(_HISTORY * half_life))
     scene.scatter(_OLD, min(100, 2 * math.ceil(max(1 / share, min(12.0, 1 / (1.001 - share))))))
-    scene.show(_OLD, 1)  # ends the waiting of the nodes that were scattered first, which is observed time too
+    scene.show(_OLD, math.ceil(_HISTORY * half_life))
     passed, window, shown = [0.0], [0.0], [0.0]
     stride = max(1, round(half_life / _POINTS))
     while min(window[-1], shown[-1]) < 0.5 and passed[-1] < 3 * level.half_life:
@@ -140,6 +142,11 @@ def measured(level: Level, steps: _Steps, seen: float, nodes: int) -> Ratio:
         window.append(new)
         shown.append(float(shows_new.mean()))
     return Ratio(*(_crossing(passed, values) / level.half_life for values in (window, shown)))
+
+
+def _runs(level: Level, nodes: int) -> int:
+    """How many nodes: in few samples chance decides more."""
+    return nodes * math.ceil(_MANY / level.window)
 
 
 def _crossing(passed: Sequence[float], values: Sequence[float]) -> float:
@@ -213,8 +220,9 @@ def _sentences(nodes: int, numbers: dict[str, float]) -> tuple[str, ...]:
         "*Window*: when half of what the level knows is new. *Estimate*: when half "
         "of the angle bins show it. Both by the half-life that was stated: 1.00 is right. Neighbours are "
         "seen together where both are seen, and each angle bin in all, three "
-        f"quarters or half of the scans. Means over {nodes} nodes. In time, an absence counts 10 s: the "
-        "last two rows are scans with a day between every ten, and one in ten minutes.",
+        f"quarters or half of the scans. Means over {nodes} nodes, of windows below {_MANY} over more. In time, an "
+        "absence counts 10 s: the last three rows are scans 0.5 and 5 s apart in turns, with a day between "
+        "every ten, and one in ten minutes.",
         f"Window {numbers['window least']:.2f} to {numbers['window most']:.2f}, estimate "
         f"{numbers['estimate least']:.2f} to {numbers['estimate most']:.2f} (bar: 0.9 to 1.1).",
         "Seen without its neighbour for ten half-lives, then with it for ten, an angle bin shows the new "

@@ -21,7 +21,7 @@ def assert_same(one, other):
         for node, estimate in one[level].items():
             twin = other[level][node]
             assert estimate.stamp_ns == twin.stamp_ns
-            for field in ("ranges", "support", "plausibility", "samples", "status", "last_seen_ns"):
+            for field in ("ranges", "support", "known", "samples", "status", "last_seen_ns"):
                 assert np.array_equal(
                     getattr(estimate, field), getattr(twin, field), equal_nan=field == "ranges"
                 )

@@ -51,10 +51,8 @@ def _to_box(node: Node, box: Box, u, v):
     return np.where((enter <= leave) & (enter > 0), enter, np.inf)
 
 
-def estimate(
-    node: int, ranges, *, stamp_ns: int = 1, samples: int = 20, support: float = 0.9, known: float = 1.0
-):
-    """An estimate whose every bin has the given support, known share and samples."""
+def estimate(node: int, ranges, *, stamp_ns: int = 1, samples: int = 20, support: float = 0.9):
+    """An estimate whose every bin has the given support and samples."""
     ranges = np.asarray(ranges, dtype=np.float32)
     full = np.ones(len(ranges), dtype=np.float32)
     return Estimate(
@@ -63,7 +61,7 @@ def estimate(
         stamp_ns=stamp_ns,
         ranges=ranges,
         support=support * full,
-        plausibility=(1 - (known - support)) * full,
+        known=full,
         samples=np.full(len(ranges), samples, dtype=np.uint16),
         status=np.full(len(ranges), Status.MEASURED, np.uint8),
         last_seen_ns=np.full(len(ranges), stamp_ns),

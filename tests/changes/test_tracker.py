@@ -265,3 +265,17 @@ def test_the_order_of_the_nodes_does_not_matter():
         return sorted((e.kind.value, *np.round(e.centre, 6), e.first_seen_ns) for e in house.tracker.events)
 
     assert told((HERE, BESIDE)) == told((BESIDE, HERE))
+
+
+def test_a_thing_that_had_vanished_and_turns_up_beside_its_place_is_one_event_among_others():
+    house = House((HERE,))
+    board, aside = Box(3.0, 0.0, 0.1, 0.5), Box(3.0, 0.8, 0.1, 0.5)
+    house.round([board, OTHER])
+    house.round([board, OTHER])
+    for _ in range(2):
+        house.round([board], long=[board, OTHER])
+    for _ in range(2):
+        house.round([], long=[board, OTHER])
+    assert [event.kind for event in house.tracker.events] == [Kind.VANISHED, Kind.VANISHED]
+    house.round([aside], long=[board, OTHER])
+    assert [event.kind for event in house.tracker.events] == [Kind.VANISHED, Kind.MOVED]

@@ -100,6 +100,14 @@ def test_a_changed_setting_fails_and_is_the_first_cause():
     assert verdict(found, settings_changed=1).outcome is Outcome.PASSED
 
 
+def test_a_setting_that_one_version_does_not_know_is_no_change_but_a_level_is():
+    plain = snapshot().settings
+    assert verdict(snapshot(settings={**plain, "gate.new": 1})).outcome is Outcome.PASSED
+    assert failed(verdict(snapshot(settings={**plain, "levels.day.window": 9}))) == [
+        ("settings.changed", None)
+    ]
+
+
 def test_missing_scans_fail_with_their_share():
     one = verdict(snapshot(scans=Scans(900, 891, {"no_pose": 9})))
     assert failed(one) == [("scans.read", None)]

@@ -60,7 +60,7 @@ def test_minus_inf_is_too_close_and_no_evidence():
 def test_zero_is_no_evidence():
     scans = batch(with_code(0.0))
     assert np.isnan(resolved(scans)[:, ::9]).all()
-    assert settle([scans]).found == ("invalid: 0",)
+    assert settle([scans]).found == ("invalid: 0 (no evidence)",)
 
 
 def test_the_constant_range_max_is_no_return():
@@ -91,7 +91,7 @@ def test_several_numbers_of_a_sick_lms_are_all_no_return():
     ranges[::2, ::9] = 81.87
     scans = batch(ranges, range_max=80.0)
     assert_code_is_no_return(scans)
-    assert settle([scans]).found == ("no return: 81.87, 81.91 m",)
+    assert settle([scans]).found == ("no return: 81.87, 81.91 m (the scanner's own code)",)
 
 
 def test_a_rare_number_of_a_sick_lms_is_no_return():

@@ -64,12 +64,42 @@ def test_transforms_win_over_a_pose_topic():
 
 def test_a_pose_topic_in_the_map_frame_is_used_where_transforms_do_not_reach_it():
     found = seen([("odom", "base_link"), MOUNT], [pose("/amcl_pose")])
-    assert chosen(found) == Selection(("/scan",), "map", "/amcl_pose")
+    assert chosen(found) == Selection(("/scan",), "map", "/amcl_pose", covariances="/amcl_pose")
 
 
 def test_a_pose_topic_is_used_where_transforms_reach_but_not_at_the_scans_times():
     found = seen(NAVIGATION, [pose("/amcl_pose")])
     assert chosen(found, works=lambda topic, choice: choice.pose != "tf").pose == "/amcl_pose"
+
+
+@pytest.mark.parametrize(
+    "topic", ["/amcl_pose", "/robot1/mcl_pose", "/pose", "/slam_toolbox/pose", "/localization_pose"]
+)
+def test_a_localiser_tells_how_uncertain_its_transforms_are(topic):
+    found = chosen(seen(NAVIGATION, [pose(topic)]))
+    assert (found.pose, found.covariances, found.pose_topics) == ("tf", topic, (topic,))
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        pose("/amcl_pose", frame="odom"),
+        pose("/amcl_pose", msgtype=STAMPED),
+        pose("/uwb"),
+        pose("/initialpose"),
+        pose("/locali", frame="odom", msgtype=ODOMETRY, child="base_link"),
+    ],
+)
+def test_other_poses_do_not_tell_how_uncertain_transforms_are(other):
+    found = chosen(seen(NAVIGATION, [other]))
+    assert (found.pose, found.covariances, found.pose_topics) == ("tf", None, ())
+
+
+def test_the_drift_of_odometry_is_not_the_uncertainty_of_its_poses():
+    for frame, covariances in (("odom", None), ("map", "/odom")):
+        odometry = pose("/odom", frame=frame, msgtype=ODOMETRY, child="base_link")
+        found = chosen(seen([MOUNT], [odometry]), poses="/odom")
+        assert (found.pose, found.covariances, found.pose_topics) == ("/odom", covariances, ("/odom",))
 
 
 def test_amcl_is_preferred_and_wishes_are_not_poses():

@@ -41,7 +41,7 @@ def test_intel_has_missing_returns_that_are_no_evidence(name):
     )
     assert found.no_return == "ignore"
     assert found.contradicted > 0.5
-    assert found.beams[0, "/scan"].found == ("no return: 81.83 m",)
+    assert found.beams[0, "/scan"].found == ("no return: 81.83 m (the scanner's own code)",)
 
 
 def test_the_three_forms_of_intel_are_surveyed_alike():
@@ -86,7 +86,7 @@ def test_a_simulator_without_noise_shows_no_codes():
 def test_a_scanner_in_a_hall_shows_its_range_max():
     (log,) = inspected("edge_cases/pr2_mylaserdata.bag").logs
     assert log.scans[0].beams.no_return == 19808
-    assert log.scans[0].found == ("no return: 10 m",)
+    assert log.scans[0].found == ("no return: 10 m (range_max, in 97 % of the beams)",)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from timemap_cli.model.time_map import TimeMap
 
 LEVELS = (Level("short", 7, 5.0), Level("mid", 10, 12.0), Level("long", 20, 8.0, in_seconds=True))
 GATE = Gate(min_travel=0.05, min_turn=0.1, min_interval_ns=200_000_000)
-ARRAYS = ("ranges", "support", "plausibility", "samples", "status", "last_seen_ns")
+ARRAYS = ("ranges", "support", "known", "samples", "status", "last_seen_ns")
 OPEN_GATE = Gate(0.0, 0.0, 0)
 
 

@@ -183,6 +183,16 @@ class SlowEstimate:
             return 3
         return 1 if i in lately and own > rival else 2
 
+    def support(self, a, shown):
+        """Share of what is known of angle bin a that a change from the range shown would not be told by."""
+        memory, weights = self.memory, [0.0, 0.0]
+        for value, then in memory.samples[a]:
+            agrees = value == shown or (
+                CLEAR not in (value, shown) and abs(value - shown) <= max(200, 0.03 * shown)
+            )
+            weights[agrees] += max(OLDEST, (1 - 1 / memory.window) ** (memory.spared[a] - then))
+        return weights[True] / sum(weights) if memory.samples[a] else 0.0
+
     def reported(self, a, i):
         """Lower median of the samples in a state, or of its pairs' ranges where its samples are gone; None: nothing."""
         values = [value for value, _ in self.memory.samples[a] if value in self.states[a][i]]

@@ -60,8 +60,8 @@ def test_rows_that_were_never_set_contradict_nothing():
     np.testing.assert_array_equal(share, [NAN, NAN, NAN, 1.0])
 
 
-def estimate(ranges, support, plausibility, samples):
-    arrays = (np.array(values, np.float32) for values in (ranges, support, plausibility))
+def estimate(ranges, support, known, samples):
+    arrays = (np.array(values, np.float32) for values in (ranges, support, known))
     rest = np.zeros(len(samples), np.uint8), np.zeros(len(samples), np.int64)
     return Estimate(0, "long", 0, *arrays, np.array(samples, np.uint16), *rest)
 
@@ -69,8 +69,8 @@ def estimate(ranges, support, plausibility, samples):
 def test_ranges_are_firm_with_samples_enough_and_half_of_what_is_known():
     found = estimate(
         [1.234, 1.234, 1.234, 1.234, INF, NAN],
-        [0.9, 0.9, 0.25, 0.2, 0.9, 0.9],
-        [1.0, 1.0, 0.75, 0.75, 1.0, 1.0],
+        [0.9, 0.9, 0.5, 0.49, 0.9, 0.9],
+        [1.0, 1.0, 0.3, 1.0, 1.0, 1.0],
         [15, 14, 15, 15, 15, 15],
     )
     expected = codes(np.array([[1.234, NAN, 1.234, NAN, INF, NAN]]))

@@ -133,6 +133,26 @@ def test_in_seconds_the_rate_of_scans_does_not_matter():
         assert share == pytest.approx(0.1096, abs=0.003)
 
 
+def test_a_memory_is_young_until_all_that_was_due_would_have_filled_its_window():
+    """Visits of ten scans: 0.329 + 9 * 0.0033 turns are due for each, 10 for 28 visits. From then on so many are taken,
+    though N / t = 10 / 300 is still ten times what is due for a scan of a visit.
+    """
+    level = Level("level", 10, 200.0, in_seconds=True)
+    steps = np.where(np.arange(800) % 10 == 0, 3600.0, 0.1)
+    taken = drawn(level, 800, stamps=np.cumsum(steps * SECOND).astype(np.int64))
+    assert taken[:280].sum() == pytest.approx(10 * (1 + math.log(280 / 10)), abs=2)
+    assert taken[290:790].sum() == pytest.approx(50 * 0.3585, abs=2)
+
+
+@pytest.mark.parametrize("block", [1, 7, 64])
+def test_in_seconds_the_decision_does_not_depend_on_blocks(block):
+    level, random = Level("level", 10, 33.0, in_seconds=True), np.random.default_rng(1)
+    nodes, steps = random.integers(0, 4, 700), random.choice([0.1, 0.7, 60.0], 700)
+    stamps = np.cumsum(steps * SECOND).astype(np.int64)
+    whole = drawn(level, 700, nodes=nodes, stamps=stamps)
+    np.testing.assert_array_equal(drawn(level, 700, nodes=nodes, stamps=stamps, block=block), whole)
+
+
 def test_a_long_absence_counts_for_ten_seconds():
     """Visits of ten scans, a week apart: 0.329 + 9 * 0.0033 of a turn each; a week for a week would be 1."""
     level = Level("level", 10, 200.0, in_seconds=True)

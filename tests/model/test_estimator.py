@@ -125,19 +125,19 @@ def test_a_border_of_the_view_that_never_moves_is_no_border_of_the_estimate():
     assert (np.abs(estimated(scans).astype(int) - 3000) < 60).all()
 
 
-def test_support_and_plausibility_are_shares_of_the_window():
+def test_support_is_a_share_of_what_is_known_and_that_a_share_of_the_window():
     scans = np.array([[2.0, 2.0, NAN]] * 6 + [[5.0, NAN, NAN]] * 2)
     result = found(scans, window=10)
-    assert result.support[0] == pytest.approx([6 / 8, 6 / 8, 0], abs=1e-5)
-    assert result.plausibility[0] == pytest.approx([6 / 8, 1, 1], abs=1e-5)
+    assert result.support[0] == pytest.approx([6 / 8, 1, 0], abs=1e-5)
+    assert result.known[0] == pytest.approx([1, 6 / 8, 0], abs=1e-5)
     assert result.samples[0].tolist() == [8, 6, 0]
 
 
-def test_what_a_full_level_no_longer_sees_loses_support_and_is_not_contradicted():
+def test_of_what_a_full_level_no_longer_sees_less_is_known_and_nothing_is_contradicted():
     """The window of 10 is full after ten scans; of two more that do not see the angle bin each takes a tenth."""
     result = found(np.array([[2.0, 2.0, NAN]] * 10 + [[2.0, NAN, NAN]] * 2), window=10)
-    assert result.support[0] == pytest.approx([1, 0.9**2, 0], abs=1e-5)
-    assert result.plausibility[0] == pytest.approx([1, 1, 1], abs=1e-5)
+    assert result.known[0] == pytest.approx([1, 0.9**2, 0], abs=1e-5)
+    assert result.support[0] == pytest.approx([1, 1, 0], abs=1e-5)
 
 
 def test_between_equal_shares_a_young_level_keeps_what_it_saw_first():
@@ -148,22 +148,20 @@ def test_between_equal_shares_a_young_level_keeps_what_it_saw_first():
     assert found(6.0 - np.array(far_first[:2]), window=10).ranges[0].tolist() == [2000] * 3
 
 
-def test_samples_that_a_full_level_did_not_renew_lose_their_support():
+def test_samples_that_a_full_level_did_not_renew_lose_their_weight():
     scans = np.array([[2.0, 2.0, NAN]] * 6 + [[2.0, NAN, NAN]] * 6)
-    result = found(scans, window=10)
-    assert result.support[0] == pytest.approx([1, 6 / 10 * 0.9**2, 0], abs=1e-5)
-    assert result.plausibility[0] == pytest.approx([1, 1, 1], abs=1e-5)
+    assert found(scans, window=10).known[0] == pytest.approx([1, 6 / 10 * 0.9**2, 0], abs=1e-5)
 
 
 def test_a_full_window_of_one_surface_has_all_the_support():
     result = found(np.full((40, 12), 2.0), window=10)
     assert result.support[0] == pytest.approx(1.0)
-    assert result.plausibility[0] == pytest.approx(1.0)
+    assert result.known[0] == pytest.approx(1.0)
 
 
 def test_a_window_that_is_not_full_counts_what_it_has():
     """Three scans of a hundred: shares of three, or a young map would know nothing for a day."""
-    assert found(np.full((3, 12), 2.0), window=100).support[0] == pytest.approx(1.0)
+    assert found(np.full((3, 12), 2.0), window=100).known[0] == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("angle_bins", [2, 3, 12, 13, 361, 3600])

@@ -1,5 +1,6 @@
 """When the way from the laser to its node is known to be free: what was seen, and where the robot was."""
 
+import dataclasses
 import math
 from itertools import pairwise
 
@@ -37,9 +38,15 @@ def along(*corners, step=0.1):
     return places
 
 
+def known(ways, scans, centres):
+    """Whether each scan knows a free way to its centre (n, 2), or to the one for all."""
+    rows = np.arange(len(scans))
+    return ways.look(scans).free(rows, np.broadcast_to(np.asarray(centres, float), (len(scans), 2)))
+
+
 def free(scans, x, y):
     """Whether each scan knows a free way to (x, y)."""
-    return FreeWays().free(scans, np.tile([float(x), float(y)], (len(scans), 1))).tolist()
+    return known(FreeWays(), scans, (x, y)).tolist()
 
 
 @pytest.mark.parametrize("upside_down", [False, True])
@@ -103,15 +110,105 @@ def test_a_jump_of_the_pose_forgets_the_views_before_it():
     assert not free(scans, -1.0, 1.0)[-1]
 
 
-def test_scanners_remember_apart():
+def of_scanner(scans, scanner):
+    return dataclasses.replace(scans, scanner=scanner)
+
+
+def two_lasers(walls, places, bearings=NARROW, half=0.4):
+    """Scans of a laser at the front that looks ahead and of one at the rear that looks back, in turn."""
+    front = [(x + half * math.cos(yaw), y + half * math.sin(yaw), yaw) for x, y, yaw in places]
+    rear = [(x - half * math.cos(yaw), y - half * math.sin(yaw), yaw + math.pi) for x, y, yaw in places]
+    found = []
+    for i, both in enumerate(zip(front, rear, strict=True)):
+        for scanner, place in enumerate(both):
+            stamp = np.array([100_000_000 * i + 50_000_000 * scanner])
+            found.append(
+                dataclasses.replace(drive(walls, [place], bearings), stamps_ns=stamp, scanner=scanner)
+            )
+    return found
+
+
+def known_ways(scans, x, y):
+    """Of each scan in turn, by scanner."""
+    ways = FreeWays()
+    found = [(one.scanner, bool(known(ways, one, (x, y))[0])) for one in scans]
+    return [[free for scanner, free in found if scanner == wanted] for wanted in (0, 1)]
+
+
+def test_what_one_scanner_saw_counts_for_the_other():
     ways = FreeWays()
     scans = drive(HALL, along((-2, 1), (0, 1)), fan(61, 60))
-    ways.free(scans, np.tile([-1.0, 1.0], (len(scans), 1)))
-    last = scans.rows(slice(-1, None))
-    assert ways.free(last, np.array([[-1.0, 1.0]]))[0]
-    other = sweeps(last.ranges, last.bearings, last.map_from_laser_first)
-    object.__setattr__(other, "scanner", 1)
-    assert not ways.free(other, np.array([[-1.0, 1.0]]))[0]
+    ways.look(scans)
+    last = of_scanner(scans.rows(slice(-1, None)), 1)
+    assert known(ways, last, (-1.0, 1.0))[0]
+    assert not known(FreeWays(), last, (-1.0, 1.0))[0]
+
+
+def test_what_one_scanner_saw_in_an_earlier_replay_counts_for_the_other():
+    ways, resumed = FreeWays(), FreeWays()
+    scans = drive(HALL, along((-2, 1), (0, 1)), fan(61, 60))
+    ways.look(scans)
+    resumed.restore(ways.kept())
+    assert known(resumed, of_scanner(scans.rows(slice(-1, None)), 1), (-1.0, 1.0))[0]
+
+
+@pytest.mark.parametrize("changed", ["earlier", "elsewhere"])
+def test_what_another_scanner_saw_does_not_count_after_a_jump_or_when_the_clock_begins_anew(changed):
+    ways = FreeWays()
+    scans = drive(HALL, along((-2, 1), (0, 1)), fan(61, 60))
+    scans = dataclasses.replace(scans, stamps_ns=scans.stamps_ns + 10**12)
+    ways.look(scans)
+    last = of_scanner(scans.rows(slice(-1, None)), 1)
+    if changed == "earlier":
+        last = dataclasses.replace(last, stamps_ns=last.stamps_ns - 10**11)
+    else:
+        last = dataclasses.replace(
+            drive(HALL, [(2.1, 1.0, EAST)], fan(61, 60)), stamps_ns=last.stamps_ns, scanner=1
+        )
+    assert not known(ways, last, (-1.0, 1.0))[0]
+
+
+def test_between_two_scanners_of_a_robot_there_is_no_wall():
+    """Both look away from each other, and the node stands where the other one does."""
+    scans = two_lasers(HALL, [(0.0, 1.0, EAST)] * 2)
+    assert known_ways(scans, 0.4, 1.0) == [[True, True], [True, True]]
+    assert known_ways(scans, -0.4, 1.0) == [
+        [False, True],
+        [True, True],
+    ]  # at first the other one is not known
+    assert known_ways(scans, 0.0, 1.3) == [[False, False], [False, False]]
+
+
+def test_where_another_scanner_was_long_ago_says_nothing():
+    first, second = two_lasers(HALL, [(0.0, 1.0, EAST)])
+    late = dataclasses.replace(second, stamps_ns=second.stamps_ns + 2 * 10**9)
+    assert known_ways([first, late], 0.0, 1.0) == [[False], [False]]
+    assert known_ways([first, second], 0.0, 1.0) == [[False], [True]]
+
+
+def test_two_scanners_do_not_know_a_way_through_a_wall():
+    places = along((1.0, 0.6), (4.0, 0.6), (4.0, -0.6), (1.0, -0.6), (-4.5, -0.6))
+    other_side = np.array([place[1] < 0 and place[0] < 1.9 for place in places])
+    for known in known_ways(two_lasers(np.concatenate((HALL, WALL)), places), 1.0, 0.6):
+        assert all(known[1:15])  # of the first, the front one knew nothing of the rear one
+        assert not np.array(known)[other_side].any()
+
+
+@pytest.mark.parametrize("upside_down", [False, True])
+def test_a_way_is_blocked_where_the_scan_hit_something_before_its_end(upside_down):
+    scan = drive(np.concatenate((HALL, WALL)), [(0.0, 0.6, SOUTH)], upside_down=upside_down)
+    look, row = FreeWays().look(scan), np.array([0])
+    assert look.are_blocked(row, np.array([[0.0, -0.1]]))[0]
+    assert look.are_blocked(row, np.array([[0.4, -0.1]]))[0]
+    assert not look.are_blocked(row, np.array([[0.0, 0.1]]))[0]  # it stands before the wall
+    assert not look.are_blocked(row, np.array([[0.0, 1.6]]))[0]  # the scan looks the other way
+    assert not look.are_blocked(row, np.array([[0.0, 0.6]]))[0]
+    assert not look.are_blocked(row, np.array([[math.nan, math.nan]]))[0]
+
+
+def test_a_beam_without_evidence_blocks_nothing():
+    scan = sweeps([np.full(181, math.nan)], NARROW, [pose(0, 0)])
+    assert not FreeWays().look(scan).are_blocked(np.array([0]), np.array([[0.9, 0.0]]))[0]
 
 
 def test_no_node_and_no_scan_give_no_way():
@@ -138,7 +235,7 @@ TURNING = drive(
 TOWARDS = (
     np.random.default_rng(2).uniform(-0.9, 0.9, (len(TURNING), 2)) + TURNING.map_from_laser_first[:, :2, 3]
 )
-WHOLE = FreeWays().free(TURNING, TOWARDS)
+WHOLE = known(FreeWays(), TURNING, TOWARDS)
 
 
 @given(st.sets(st.integers(1, len(TURNING) - 1), max_size=12))
@@ -146,6 +243,6 @@ WHOLE = FreeWays().free(TURNING, TOWARDS)
 def test_what_is_known_does_not_depend_on_blocks(cuts):
     ways, borders = FreeWays(), [0, *sorted(cuts), len(TURNING)]
     parts = [slice(*part) for part in pairwise(borders)]
-    known = np.concatenate([ways.free(TURNING.rows(part), TOWARDS[part]) for part in parts])
-    np.testing.assert_array_equal(known, WHOLE)
+    found = np.concatenate([known(ways, TURNING.rows(part), TOWARDS[part]) for part in parts])
+    np.testing.assert_array_equal(found, WHOLE)
     assert 0.2 < WHOLE.mean() < 0.99

@@ -80,6 +80,21 @@ def test_two_scanners_of_a_standing_robot_pass_once_each():
             assert passes.tolist() == [second == 0]
 
 
+def test_no_scanner_takes_the_turn_of_the_other():
+    """One scans 10 ms after the other, well within the interval: both pass as often as alone."""
+    places = np.array([[0.02 * i, 0.0, 0.0] for i in range(100)])
+    stamps_ns = np.arange(100) * 100_000_000
+    alone = passing(GATE, [0] * 100, places, stamps_ns, {}, 1)
+    last, front, rear = {}, [], []
+    for i in range(100):
+        front += passing(
+            GATE, [0], places[i : i + 1] + 0.5, stamps_ns[i : i + 1] - 10_000_000, last, 0
+        ).tolist()
+        rear += passing(GATE, [0], places[i : i + 1], stamps_ns[i : i + 1], last, 1).tolist()
+    assert front == rear == alone.tolist()
+    assert 30 < sum(rear) < 40
+
+
 def test_stamps_that_begin_anew_do_not_close_the_gate():
     last = {}
     places = np.array([[x, 0.0, 0.0] for x in (0.0, 1.0, 2.0)])

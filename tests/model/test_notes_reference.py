@@ -73,8 +73,8 @@ def test_ranges_and_shares_are_those_of_the_experiments_reference(reference, see
         assert path_score(reference, memory, metres[0], unary, pairwise) == pytest.approx(best, abs=1e-4)
         return
     np.testing.assert_array_equal(metres[0], ranges)
-    np.testing.assert_allclose(found.support[0], share, atol=2e-6)
-    np.testing.assert_allclose(found.plausibility[0], 1 - (known - share), atol=2e-6)
+    np.testing.assert_allclose(found.known[0], known, atol=2e-6)
+    np.testing.assert_allclose(found.support[0], share / np.maximum(known, 1e-9), atol=1e-4)
 
 
 def path_score(reference, memory, metres, unary, pairwise):

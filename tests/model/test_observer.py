@@ -1,12 +1,17 @@
 """What becomes of every scan."""
 
+import dataclasses
 import math
 
 import numpy as np
+import pytest
 
 from tests.model.drives import GATE, OPEN_GATE, drive, observer
-from tests.model.scenes import ROOM, fan, look_around, pose, sweeps
+from tests.model.scenes import ROOM, fan, look_around, pose, rectangle, sweeps
+from tests.model.test_free_ways import along
+from tests.model.test_free_ways import drive as drive_along
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.observer import gathered
 from timemap_cli.model.sweeps import Sweeps
 
 ROUND = fan(361, 360)
@@ -92,6 +97,69 @@ def test_the_gate_reads_place_and_yaw_of_the_laser():
     )
     assert observer(gate=GATE).observe(scans).passes.tolist() == [True, False, True, True]
     assert observer(gate=OPEN_GATE).observe(scans).passes.all()
+
+
+# Two lanes beside each other with a wall between them that is open at the right end.
+LANES = np.concatenate((rectangle(-4, -1, 4, 1), rectangle(-4, -0.05, 3, 0.05)))
+
+
+def lanes(degrees, step=0.1):
+    """A robot goes along one lane, round the wall's end, and back along the other, 0.45 m from the wall."""
+    return along((-3.5, 0.45), (3.5, 0.45), (3.5, -0.45), (-3.5, -0.45), step=step), fan(degrees + 1, degrees)
+
+
+def test_a_scan_whose_nearest_node_is_behind_a_wall_goes_to_the_next_that_it_sees():
+    scan = look_around(LANES, 0.0, 0.45, 0.0, ROUND)
+    found = observer(nodes=[Node(0.0, -0.2), Node(0.6, 0.7), Node(-0.7, 0.7)], spacing=1.0).observe(scan)
+    assert (found.nodes.tolist(), found.node_not_seen) == ([1], 0)
+
+
+def test_of_given_nodes_none_that_it_sees_is_near_and_none_is_made():
+    scan = look_around(LANES, 0.0, 0.45, 0.0, ROUND)
+    looking = observer(nodes=[Node(0.0, -0.2), Node(1.5, 0.7)], spacing=1.0)
+    found = looking.observe(scan)
+    assert (len(found), found.node_not_seen, len(looking.nodes)) == (0, 1, 2)
+
+
+def test_a_node_is_made_where_a_wall_hides_all_that_are_near():
+    looking = observer(spacing=1.0)
+    there, behind = (look_around(LANES, 0.0, y, 0.0, ROUND) for y in (-0.45, 0.45))
+    found = looking.observe(block(there, behind, behind))
+    assert (found.nodes.tolist(), found.node_not_seen) == ([0, 1, 1], 0)
+    assert looking.nodes == [Node(0.0, -0.45), Node(0.0, 0.45)]
+
+
+def test_a_node_that_a_scan_does_not_look_towards_is_no_reason_to_make_one():
+    looking = observer(spacing=1.0)
+    looking.observe(look_around(LANES, 0.0, 0.45, 0.0, ROUND))
+    away = look_around(LANES, 0.6, 0.45, 0.0, fan(181, 180))
+    another_day = dataclasses.replace(away, stamps_ns=away.stamps_ns - 1)
+    assert looking.observe(another_day).node_not_seen == 1
+    assert len(looking.nodes) == 1
+
+
+@pytest.mark.parametrize("degrees", [360, 270])
+def test_a_robot_between_thin_walls_loses_no_scan(degrees):
+    places, bearings = lanes(degrees)
+    looking = observer(spacing=1.0)
+    found = looking.observe(drive_along(LANES, places, bearings))
+    assert found.node_not_seen == 0
+    beside = [places[i][1] * looking.nodes[n].y > 0 or places[i][0] > 2.5 for i, n in enumerate(found.nodes)]
+    assert all(beside)
+    assert len(looking.nodes) <= 20
+
+
+@pytest.mark.parametrize("size", [1, 5, 23])
+def test_nodes_made_behind_walls_do_not_depend_on_blocks(size):
+    scans = drive_along(LANES, *lanes(181))
+    whole, pieces = observer(spacing=1.0), observer(spacing=1.0)
+    expected = whole.observe(scans)
+    parts = [pieces.observe(scans.rows(slice(i, i + size))) for i in range(0, len(scans), size)]
+    found = gathered(parts)
+    assert pieces.nodes == whole.nodes
+    assert (found.nodes.tolist(), found.node_not_seen) == (expected.nodes.tolist(), expected.node_not_seen)
+    np.testing.assert_array_equal(found.ranges, expected.ranges)
+    np.testing.assert_array_equal(found.passes, expected.passes)
 
 
 def test_a_narrow_scanner_does_not_judge_a_node_behind_a_wall_beside_it():

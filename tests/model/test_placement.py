@@ -12,7 +12,7 @@ from timemap_cli.model.placement import NO_NODE, Placement
 
 
 def assigned(placement, *places):
-    return placement.assign(np.array(places, float).reshape(-1, 2)).tolist()
+    return placement.assign(np.array(places, float).reshape(-1, 2))[0].tolist()
 
 
 def test_the_first_scan_makes_a_node_where_the_robot_is():
@@ -56,7 +56,7 @@ def test_nodes_stand_on_whole_millimetres():
 def test_nodes_stand_farther_apart_than_the_spacing_and_every_scan_has_one_near():
     places = np.random.default_rng(2).uniform(-6, 6, (600, 2))
     placement = Placement(1.5)
-    nodes = placement.assign(places)
+    nodes, _ = placement.assign(places)
     centres = placement.centres
     apart = np.linalg.norm(centres[:, None] - centres, axis=2) + np.eye(len(centres)) * 9
     assert apart.min() > 1.5 - 0.002
@@ -67,9 +67,9 @@ def test_nodes_stand_farther_apart_than_the_spacing_and_every_scan_has_one_near(
 def test_nodes_do_not_depend_on_blocks(block):
     places = np.cumsum(np.random.default_rng(3).normal(0, 0.3, (300, 2)), axis=0)
     whole, pieces = Placement(1.0), Placement(1.0)
-    expected = whole.assign(places).tolist()
-    found = np.concatenate([pieces.assign(places[i : i + block]) for i in range(0, 300, block)]).tolist()
-    assert found == expected
+    expected = whole.assign(places)[0].tolist()
+    parts = [pieces.assign(places[i : i + block])[0] for i in range(0, 300, block)]
+    assert np.concatenate(parts).tolist() == expected
     assert pieces.nodes == whole.nodes
 
 
@@ -85,12 +85,45 @@ def test_a_place_that_is_not_finite_has_no_node_and_makes_none():
     assert placement.nodes == [Node(0.0, 0.0), Node(5.0, 0.0)]
 
 
+def test_every_scan_knows_the_nodes_of_those_before_it_and_its_own():
+    placement = Placement(1.0)
+    _, known = placement.assign(np.array([(0.0, 0.0), (0.5, 0.0), (2.0, 0.0), (4.0, 0.0), (4.1, 0.0)]))
+    assert known.tolist() == [1, 1, 2, 3, 3]
+
+
+def farther(placement, places, known, choice):
+    near, node = placement.farther(np.array(places, float), np.array(known), choice)
+    return [number if there else None for there, number in zip(near.tolist(), node.tolist(), strict=True)]
+
+
+def test_farther_nodes_come_in_the_order_of_their_distance():
+    placement = Placement(1.0, [Node(0, 0), Node(0.6, 0), Node(-0.8, 0), Node(5, 0)])
+    places = [(0.1, 0.0), (5.0, 0.0)]
+    assert farther(placement, places, [4, 4], 1) == [1, None]
+    assert farther(placement, places, [4, 4], 2) == [2, None]
+    assert farther(placement, places, [4, 4], 3) == [None, None]
+    assert farther(placement, places, [4, 4], 4) == [None, None]
+
+
+def test_nodes_that_were_made_later_are_no_choice():
+    placement = Placement(1.0, [Node(0, 0), Node(0.6, 0)])
+    assert farther(placement, [(0.1, 0.0)] * 2, [1, 2], 1) == [None, 1]
+    assert Placement(1.0).farther(np.empty((0, 2)), np.empty(0, np.int64), 1)[0].tolist() == []
+
+
+def test_an_inserted_node_undoes_those_made_from_its_number_on():
+    placement = Placement(1.0)
+    placement.assign(np.array([(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]))
+    placement.insert(np.array([0.51234, 0.0]), 1)
+    assert placement.nodes == [Node(0, 0), Node(0.512, 0)]
+
+
 def test_there_are_never_more_nodes_than_the_bound_however_far_the_robot_jumps(monkeypatch):
     monkeypatch.setattr("timemap_cli.model.placement.MOST_NODES", 3)
     placement = Placement(1.0)
     jumps = np.array([[0.0, 0.0], [10.0, 0.0], [20.0, 0.0], [30.0, 0.0], [10.2, 0.0], [np.nan, 0.0]])
-    assert placement.assign(jumps).tolist() == [0, 1, 2, NO_NODE, 1, NO_NODE]
-    assert placement.assign(jumps).tolist() == [0, 1, 2, NO_NODE, 1, NO_NODE]
+    assert placement.assign(jumps)[0].tolist() == [0, 1, 2, NO_NODE, 1, NO_NODE]
+    assert placement.assign(jumps)[0].tolist() == [0, 1, 2, NO_NODE, 1, NO_NODE]
     assert len(placement.nodes) == 3
 
 
@@ -106,6 +139,6 @@ def test_each_scan_goes_where_one_after_the_other_would(steps, at_once):
             squares.append(0.0)
         expected.append(squares.index(min(squares)))
     placement = Placement(1.0)
-    found = [placement.assign(places[i : i + at_once]) for i in range(0, len(places), at_once)]
+    found = [placement.assign(places[i : i + at_once])[0] for i in range(0, len(places), at_once)]
     assert [node for some in found for node in some.tolist()] == expected
     assert [(node.x, node.y) for node in placement.nodes] == nodes

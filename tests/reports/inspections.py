@@ -21,6 +21,7 @@ SCAN = ScanTopic(
     beams=BeamCounts(hit=159_628, no_return=4_172),
     with_pose=905,
     found=("no return: 81.83 m",),
+    pose_report=None,
 )
 LOG = LogInfo(
     path="intel.mcap",

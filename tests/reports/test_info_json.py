@@ -3,6 +3,7 @@ from dataclasses import replace
 from math import inf, nan
 
 from tests.reports.inspections import INTEL, LOG, SCAN, STUCK
+from timemap_cli.logs.pose_quality import PoseReport
 from timemap_cli.reports.info_json import info_json
 
 
@@ -44,6 +45,36 @@ def test_without_a_selection_the_reason_is_among_the_problems():
     assert log["selected"] is None
     assert document(STUCK)["span_ns"] is None
     assert log["problems"][0] == "2 scan topics and none named: /a, /b"
+
+
+def with_report(**values):
+    found = {"covariances": "/amcl_pose", "position_std": 0.6, "yaw_std": 0.25, "jumps": 0}
+    found |= {"largest_jump": 0.0, "largest_jump_ns": 0, "set_aside": {"uncertain_pose": 0, "pose_jump": 0}}
+    return replace(
+        INTEL, logs=(replace(LOG, scans=(replace(SCAN, pose_report=PoseReport(**(found | values))),)),)
+    )
+
+
+def test_how_good_the_poses_are():
+    aside = {"uncertain_pose": 3, "pose_jump": 1}
+    found = with_report(
+        jumps=2, largest_jump=1.23456, largest_jump_ns=976_052_900_000_000_001, set_aside=aside
+    )
+    assert document(found)["logs"][0]["scans"][0]["pose_quality"] == {
+        "covariances": "/amcl_pose",
+        "position_std_m": 0.6,
+        "yaw_std_deg": 14.3239,
+        "jumps": 2,
+        "largest_jump_m": 1.2346,
+        "largest_jump_ns": "976052900000000001",
+        "set_aside": aside,
+    }
+    unknown = with_report(covariances=None, position_std=None, yaw_std=None)
+    quality = document(unknown)["logs"][0]["scans"][0]["pose_quality"]
+    assert {name for name, value in quality.items() if value is None} == {
+        "covariances", "position_std_m", "yaw_std_deg", "largest_jump_m", "largest_jump_ns",
+    }  # fmt: skip
+    assert document(INTEL)["logs"][0]["scans"][0]["pose_quality"] is None
 
 
 def test_what_is_not_known_is_null():

@@ -5,6 +5,7 @@ import pytest
 from tests.reports.inspections import INTEL, LOG, SCAN, STUCK
 from timemap_cli.logs.beams import BeamCounts
 from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.logs.pose_quality import PoseReport
 from timemap_cli.reports.info_text import info_text
 
 
@@ -86,6 +87,40 @@ def test_of_several_recordings_each_says_what_its_missing_returns_count_as():
         "  no return  later.mcap: no evidence: 22 % of those sampled pass through something solid, "
         "but others of the recordings before it\n"
     ) in told
+
+
+@pytest.mark.parametrize(
+    ("jumps", "aside", "lines"),
+    [
+        (0, {"uncertain_pose": 0, "pose_jump": 0}, []),
+        (
+            1,
+            {"uncertain_pose": 0, "pose_jump": 1},
+            ["poses jump once, by 1.2 m at 2000-12-05T21:48:20Z", "1 scan would be set aside: pose_jump 1"],
+        ),
+        (
+            3,
+            {"uncertain_pose": 7, "pose_jump": 4},
+            [
+                "poses jump 3 times, by up to 1.2 m at 2000-12-05T21:48:20Z",
+                "11 scans would be set aside: uncertain_pose 7, pose_jump 4",
+            ],
+        ),
+    ],
+)
+def test_how_good_the_poses_are(jumps, aside, lines):
+    report = PoseReport("/amcl_pose", 0.604, 0.25, jumps, 1.234, 976_052_900_000_000_001, aside)
+    log = replace(LOG, scans=(replace(SCAN, pose_report=report),))
+    told = info_text(replace(INTEL, logs=(log,))).splitlines()
+    certain = "poses uncertain by up to 0.6 m and 14 deg (one standard deviation, /amcl_pose)"
+    expected = ["905 of 910 scans have a pose", certain, *lines]
+    assert told[5 : 6 + 1 + len(lines)] == [f"            {line}" for line in expected]
+
+
+def test_poses_of_which_nothing_is_known_are_not_talked_about():
+    report = PoseReport(None, None, None, 0, 0.0, 0, {"uncertain_pose": 0, "pose_jump": 0})
+    log = replace(LOG, scans=(replace(SCAN, pose_report=report),))
+    assert info_text(replace(INTEL, logs=(log,))) == info_text(INTEL)
 
 
 def test_small_shares_are_not_rounded_to_nothing_nor_large_ones_to_all():

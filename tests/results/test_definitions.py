@@ -30,7 +30,7 @@ def test_point_field_has_its_constants():
 
 def test_status_begins_with_the_fields_that_its_first_readers_know():
     names = [name for name, _ in typestore(definitions.STATUS).fielddefs[definitions.STATUS][1]]
-    assert names[:5] == ["header", "samples", "plausibility", "status", "last_seen"]
+    assert names == ["header", "samples", "plausibility", "status", "last_seen", "known"]
 
 
 def test_status_names_the_codes_of_the_model():

@@ -162,7 +162,7 @@ def test_documents_that_are_none_are_damage(sound, tmp_path, name, text):
         {SCAN: put(scan_layout(360, FRAME).fields["ranges"][1], "<f", 3e38)},
         {SCAN: put(scan_layout(360, FRAME).fields["ranges"][1], "<f", -math.inf)},
         {SCAN: put(scan_layout(360, FRAME).fields["intensities"][1], "<f", math.nan)},
-        {STATUS: put(status_layout(360, FRAME).fields["plausibility"][1], "<f", 2.0)},
+        {STATUS: put(status_layout(360, FRAME).fields["known"][1], "<f", 2.0)},
         {SCAN: put(12, "<I", 2**32 - 1)},  # length of the frame's name
         {SCAN: lambda message: b""},
         {STATUS: lambda message: message[:40]},

@@ -46,6 +46,7 @@ def test_status_is_what_a_ros_client_reads(node, bins):
     np.testing.assert_array_equal(status.samples, one.samples)
     np.testing.assert_array_equal(status.plausibility, one.plausibility)
     np.testing.assert_array_equal(status.status, one.status)
+    np.testing.assert_array_equal(status.known, one.known)
     assert [time.sec * 10**9 + time.nanosec for time in status.last_seen] == one.last_seen_ns.tolist()
 
 

@@ -18,7 +18,7 @@ def room(tmp_path_factory):
 
 def same(one, other):
     assert (one.node, one.level, one.stamp_ns) == (other.node, other.level, other.stamp_ns)
-    for name in ("ranges", "support", "plausibility", "samples", "status", "last_seen_ns"):
+    for name in ("ranges", "support", "known", "samples", "status", "last_seen_ns"):
         written, read = getattr(one, name), getattr(other, name)
         assert (written.dtype, written.tobytes()) == (read.dtype, read.tobytes())
 
@@ -182,7 +182,7 @@ def test_a_changed_byte_anywhere_is_either_harmless_or_one_clear_error(room, tmp
 
 def test_a_result_of_another_format_names_its_version(room, tmp_path):
     path, raw = tmp_path / "newer.mcap", room[0].read_bytes()
-    path.write_bytes(raw.replace(b"timemap.result/1", b"timemap.result/9"))
+    path.write_bytes(raw.replace(b"timemap.result/2", b"timemap.result/9"))
     with pytest.raises(TimemapError, match=r"format 'timemap\.result/9'") as caught:
         ResultReader(path)
     assert "written by timemap" in caught.value.hint

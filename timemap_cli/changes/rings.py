@@ -84,13 +84,9 @@ def stack(side: Mapping[int, Estimate], numbers: Sequence[int]) -> Rings:
     Raises ValueError where they differ in their number of angle bins.
     """
     estimates = [side[n] for n in numbers]
-    support = np.array([e.support for e in estimates], dtype=np.float64)
-    plausibility = np.array([e.plausibility for e in estimates], dtype=np.float64)
-    known = support + 1.0 - plausibility
-    share = np.divide(support, known, out=np.zeros_like(support), where=known > 0)
     return Rings(
         ranges=np.array([e.ranges for e in estimates], dtype=np.float64),
-        support=np.clip(share, 0.0, 1.0),
+        support=np.array([e.support for e in estimates], dtype=np.float64),
         samples=np.array([e.samples for e in estimates], dtype=np.int64),
         last_seen_ns=np.array([e.last_seen_ns for e in estimates], dtype=np.int64),
         stamps_ns=np.array([e.stamp_ns for e in estimates], dtype=np.int64),

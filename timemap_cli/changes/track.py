@@ -17,7 +17,7 @@ _GRID_M = 0.05  # points of an outline closer than this are one
 _CONFIRMED = 2  # rounds in which an episode is seen, or seen undone, before it counts
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Track:
     """A change at its place: what every node and level says of it, and since when.
 

@@ -63,8 +63,13 @@ def _beams(expected: Snapshot, found: Snapshot, allowed: Mapping[str, float]) ->
 
 
 def changed_settings(expected: Mapping[str, object], found: Mapping[str, object]) -> list[str]:
-    """`levels.long.half_life "400obs" instead of "200obs"`, for each setting that differs."""
+    """`levels.long.half_life 400obs instead of 200obs`, for each setting that differs.
+
+    What one side alone has is a level that was added or removed, or a setting that the other version did not know:
+    the latter stands at what was always done, or shows in the map.
+    """
     names = [*expected, *(name for name in found if name not in expected)]
+    names = [name for name in names if name.startswith("levels.") or (name in expected and name in found)]
     return [
         f"{name} {_shown(found, name)} instead of {_shown(expected, name)}"
         for name in names

@@ -101,17 +101,18 @@ def settle(sample: Sequence[ScanBatch]) -> Beams:
     range_max = np.concatenate([batch.range_max for batch in sample])
     range_min = _range_min(sample)
     nominal, words = _nominal(range_max)
+    codes = _codes(sample, range_min, nominal)
+    threshold = codes[-1].begin if codes else float("inf")
     at_range_max = False
     if words == VARIES:
-        at_range_max = _repeats_range_max(sample)
+        at_range_max = _repeats_range_max(sample, threshold)
         if at_range_max:
             words = f"{VARIES} and stands for a missing return"
-        elif _is_largest_of_scan(sample):
+        elif _is_largest_of_scan(sample, threshold):
             words = "range_max is the largest range of each scan: not used"
-    threshold = _lowest_code(sample, range_min, nominal)
     beams = Beams(range_min, threshold, at_range_max, 0.0, True, ())
     clear_range, doubt = _clear_range(beams, sample, nominal)
-    found = (*_codes_in_words(sample, beams), *_low_codes_in_words(sample, range_min), words, doubt)
+    found = (*_codes_in_words(sample, codes), *_low_codes_in_words(sample, range_min), words, doubt)
     return replace(beams, clear_range=clear_range, found=tuple(text for text in found if text))
 
 
@@ -131,39 +132,54 @@ def _nominal(range_max: Float32s) -> tuple[float | None, str]:
     return None, VARIES
 
 
-def _is_largest_of_scan(sample: Sequence[ScanBatch]) -> bool:
-    """Whether range_max is the largest range of each scan."""
+def _is_largest_of_scan(sample: Sequence[ScanBatch], threshold: float) -> bool:
+    """Whether range_max is the largest range of each scan; what `threshold` [m] and more stands for is none."""
     equal, scans = 0, 0
     for batch in sample:
-        finite = np.where(np.isfinite(batch.ranges), batch.ranges, np.float32(0))
+        finite = np.where(batch.ranges < np.float32(threshold), batch.ranges, np.float32(0))
         equal += int(np.count_nonzero(np.isclose(finite.max(axis=1, initial=0), batch.range_max, rtol=SAME)))
         scans += len(batch.range_max)
     return equal >= 0.9 * scans
 
 
-def _repeats_range_max(sample: Sequence[ScanBatch]) -> bool:
-    """Whether a range_max that differs from scan to scan is shared by more beams than a far corner has."""
-    equal = sum(int(np.count_nonzero(batch.ranges >= batch.range_max[:, None])) for batch in sample)
+def _repeats_range_max(sample: Sequence[ScanBatch], threshold: float) -> bool:
+    """Whether a range_max that differs from scan to scan is shared by more beams than a far corner has.
+
+    Beams that show a code, from `threshold` [m] on, are missing anyway.
+    """
+    equal = 0
+    for batch in sample:
+        reached = (batch.ranges >= batch.range_max[:, None]) & (batch.ranges < np.float32(threshold))
+        equal += int(np.count_nonzero(reached))
     scans = sum(len(batch.range_max) for batch in sample)
     beams = sum(batch.ranges.size for batch in sample)
     return equal > 3 * scans and equal > 0.01 * beams
 
 
-def _lowest_code(sample: Sequence[ScanBatch], range_min: float, nominal: float | None) -> float:
-    """Where the numbers begin that stand for a missing return [m]; inf if there are none."""
+@dataclass(frozen=True, slots=True)
+class _Code:
+    """Numbers that stand for a missing return, and why they are taken for it."""
+
+    begin: float  # [m] the least of them
+    why: str
+
+
+def _codes(sample: Sequence[ScanBatch], range_min: float, nominal: float | None) -> list[_Code]:
+    """The codes for a missing return, largest first."""
     flat = np.concatenate([batch.ranges.ravel() for batch in sample])
     values, counts = np.unique(flat[np.isfinite(flat) & (flat >= np.float32(range_min))], return_counts=True)
-    lowest = float("inf")
+    found: list[_Code] = []
     # A scanner may have several codes; the largest number of all is one of them, or there is none.
     while values.size:
         begin = _begin_of_code(float(values[-1]))
         block = values >= np.float32(begin)
         near = counts[(values > 0.95 * begin) & ~block]
-        if not _is_code(sample, float(values[-1]), int(counts[block].sum()), near, flat.size, nominal):
+        why = _why_a_code(sample, float(values[-1]), int(counts[block].sum()), near, flat.size, nominal)
+        if why is None:
             break
-        lowest = begin
+        found.append(_Code(begin, why))
         values, counts = values[~block], counts[~block]
-    return lowest
+    return found
 
 
 def _begin_of_code(value: float) -> float:
@@ -174,21 +190,24 @@ def _begin_of_code(value: float) -> float:
     return value * (1 - SAME)
 
 
-def _is_code(
+def _why_a_code(
     sample: Sequence[ScanBatch],
     value: float,
     count: int,
     near: NDArray[np.int64],
     total: int,
     nominal: float | None,
-) -> bool:
-    """Whether the largest number is a code, not a far wall; `near` counts the numbers just below it."""
+) -> str | None:
+    """Why the largest number is a code; None if it is a far wall. `near` counts the numbers just below it."""
     if any(low <= value <= high for low, high in PROTOCOL_CODES):
-        return True
+        return "the scanner's own code"
+    share = f"in {100 * count / total:.2g} % of the beams"
     if nominal is not None and value >= nominal * (1 - SAME):
-        return count >= max(3, 5 * int(near.max(initial=0)))
+        at = "range_max" if value <= nominal * (1 + SAME) else f"beyond range_max {nominal:g} m"
+        return f"{at}, {share}" if count >= max(3, 5 * int(near.max(initial=0))) else None
     enough = count >= max(20, 0.003 * total, 10 * int(near.sum()))
-    return enough and _span(sample, value) > WALL_SPAN
+    span = _span(sample, value)
+    return f"{share}, over {np.degrees(span):.0f} deg of one scan" if enough and span > WALL_SPAN else None
 
 
 def _span(sample: Sequence[ScanBatch], value: float) -> float:
@@ -216,12 +235,19 @@ def _clear_range(beams: Beams, sample: Sequence[ScanBatch], nominal: float | Non
     return nominal, doubt
 
 
-def _codes_in_words(sample: Sequence[ScanBatch], beams: Beams) -> tuple[str, ...]:
-    """The numbers that were taken for missing returns."""
+def _codes_in_words(sample: Sequence[ScanBatch], codes: Sequence[_Code]) -> tuple[str, ...]:
+    """The numbers that were taken for missing returns, and why; of those of one code the frequent ones."""
     flat = np.concatenate([batch.ranges.ravel() for batch in sample])
-    values, counts = np.unique(flat[flat >= np.float32(beams.no_return_from)], return_counts=True)
-    codes = [f"{value:g}" for value in values[counts >= 0.01 * counts.sum()]]
-    return (f"no return: {', '.join(codes)}{' m' if codes != ['inf'] else ''}",) if codes else ()
+    found = []
+    above = np.float32(np.inf)
+    for code in codes:
+        begin = np.float32(code.begin)
+        values, counts = np.unique(flat[(flat >= begin) & (flat < above)], return_counts=True)
+        numbers = ", ".join(f"{value:g}" for value in values[counts >= 0.01 * counts.sum()])
+        found.append(f"no return: {numbers} m ({code.why})")
+        above = begin
+    infinite = ("no return: inf (REP 117)",) if np.isposinf(flat).any() else ()
+    return (*infinite, *found)
 
 
 def _low_codes_in_words(sample: Sequence[ScanBatch], range_min: float) -> tuple[str, ...]:
@@ -239,5 +265,5 @@ def _low_codes_in_words(sample: Sequence[ScanBatch], range_min: float) -> tuple[
     ]
     invalid = [name for name, _ in shares if name in ("nan", "0")]
     blind = [f"{name} m in {share:.0f} %" for name, share in shares if name not in ("nan", "0")]
-    found = [f"invalid: {' and '.join(invalid)}"] if invalid else []
+    found = [f"invalid: {' and '.join(invalid)} (no evidence)"] if invalid else []
     return (*found, *([f"blind: {', '.join(blind)} of the beams"] if blind else []))

@@ -120,6 +120,18 @@ class History:
         parents = np.where(inside, self._parent[older], np.int32(NO_PARENT))
         return parents, from_translation_rotation(translation, rotation)
 
+    def around(self, first_ns: Int64s, last_ns: Int64s) -> tuple[Int64s, Int64s]:
+        """Return the stamps (n,) of the last sample not after ``first_ns`` and the first not before ``last_ns``.
+
+        The outermost sample where there is none; the older for both where the parent changes in between, as no
+        interpolation crosses that. There must be a sample.
+        """
+        self._settle()
+        older = np.maximum(np.searchsorted(self._stamps, first_ns, side="right") - 1, 0)
+        newer = np.minimum(np.searchsorted(self._stamps, last_ns), len(self._stamps) - 1)
+        newer = np.where(self._parent[older] == self._parent[newer], np.maximum(older, newer), older)
+        return self._stamps[older], self._stamps[newer]
+
     def _settle(self) -> None:
         """Merge what was added since into stamp order."""
         if not self._fresh:

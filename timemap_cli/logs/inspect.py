@@ -12,6 +12,7 @@ from timemap_cli.logs.batches import BadBatch, Batch, PoseBatch, ScanBatch, Tran
 from timemap_cli.logs.beams import Beams, settle
 from timemap_cli.logs.interleave import NEVER_NS, Recorded, RecordedTopic, interleaved
 from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.logs.pose_quality import PoseLimits
 from timemap_cli.logs.poses import TF, PoseSource, transform_topics
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.sampling import Sample, take_sample
@@ -29,6 +30,7 @@ from timemap_cli.logs.survey import (
     SampledPoses,
     Survey,
     names_of,
+    pose_limits,
     survey_sample,
     topics_of,
     what_is_seen,
@@ -108,7 +110,9 @@ def inspect_recordings(recordings: Sequence[Recording], settings: Settings) -> I
         trouble = error
     choices = {topic: _choice(seen, topic, sample, plan, settings) for topic in seen.scan_frames}
     logs = [
-        _LogReader(index, recording, sample, plan, choices).read(_beside(index, recordings, sample))
+        _LogReader(index, recording, sample, plan, choices, pose_limits(settings.gate)).read(
+            _beside(index, recordings, sample)
+        )
         for index, recording in enumerate(recordings)
     ]
     return Inspection(
@@ -129,7 +133,8 @@ def _choice(
 ) -> PoseChoice | None:
     """Where the poses for scans of a topic come from: as in the replay, or as if it were the only topic."""
     if plan is not None:
-        return PoseChoice(plan.selection.map_frame, plan.selection.pose)
+        selection = plan.selection
+        return PoseChoice(selection.map_frame, selection.pose, covariances=selection.covariances)
     try:
         return choose_poses(seen, (topic,), settings.input, SampledPoses(sample).are_known_somewhere)
     except UsageError:
@@ -180,6 +185,7 @@ class _LogReader:
         sample: Sample,
         plan: Survey | None,
         choices: dict[str, PoseChoice | None],
+        limits: PoseLimits,
     ) -> None:
         self._index = index
         self._recording = recording
@@ -195,7 +201,8 @@ class _LogReader:
                 if choice is not None and choice not in self._sources:
                     self._sources[choice] = self._new_source(choice)
                 beams = _beams(index, name, sample, plan)
-                self._scans[name] = ScanStatistics(name, beams, self._sources.get(choice) if choice else None)
+                source = self._sources.get(choice) if choice else None
+                self._scans[name] = ScanStatistics(name, beams, source, limits)
 
     def read(self, beside: Sequence[_Part]) -> LogInfo:
         recording = self._recording
@@ -224,7 +231,7 @@ class _LogReader:
         )
 
     def _new_source(self, choice: PoseChoice) -> PoseSource:
-        source = PoseSource(choice.map_frame, choice.pose)
+        source = PoseSource(choice.map_frame, choice.pose, choice.covariances)
         (drive,) = (drive for drive in self._sample.drives if self._index in drive)
         for batch in self._sample.static.of_drive(drive):
             source.add(batch)

@@ -9,9 +9,11 @@ import numpy as np
 from timemap_cli.logs.batches import Float64s, Int64s, PoseBatch, TransformBatch
 from timemap_cli.logs.history import Bools
 from timemap_cli.logs.interleave import RecordedTopic
+from timemap_cli.logs.jumps import jumps
+from timemap_cli.logs.pose_quality import Deviations, PoseQuality
 from timemap_cli.logs.rigid import compose
 from timemap_cli.logs.transforms import TransformBuffer
-from timemap_cli.model.state import State
+from timemap_cli.model.state import State, prefixed, without_prefix
 
 TF = "tf"  # what a selection says where poses come from the transforms
 TRANSFORM_TYPES = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
@@ -40,12 +42,15 @@ class PoseSource:
     They are poses of the frame the messages name (Odometry's ``child_frame_id``), else of
     ``base_footprint`` or ``base_link`` if the laser hangs below it, else of the frame at the top of the
     static transforms above the laser; that is the laser itself where there are none. Poses in another
-    frame than the map frame are taken there by the transforms.
+    frame than the map frame are taken there by the transforms. ``covariances`` names the topic that tells how
+    uncertain the poses are.
     """
 
-    def __init__(self, map_frame: str, topic: str = TF) -> None:
+    def __init__(self, map_frame: str, topic: str = TF, covariances: str | None = None) -> None:
         self._map_frame = map_frame.lstrip("/")
         self._topic = None if topic == TF else topic
+        self.covariances = covariances
+        self._deviations = Deviations()
         self._child: str | None = None
         self._buffer = TransformBuffer()
 
@@ -58,7 +63,10 @@ class PoseSource:
         """Take in transforms, or poses; poses of another topic than the chosen one are passed over."""
         if isinstance(batch, TransformBatch):
             self._buffer.add(batch)
-        elif batch.topic == self._topic:
+            return
+        if batch.topic == self.covariances:
+            self._deviations.add(batch)
+        if batch.topic == self._topic:
             self._child = batch.child_frame_id or self._child
             parent = batch.frame_id or self._map_frame
             stamps, logged = batch.stamps_ns, batch.log_ns
@@ -93,22 +101,37 @@ class PoseSource:
         first[cut_first] = last[cut_first]
         return first, last, (first_known & last_known) | cut_last | cut_first
 
+    def quality(self, laser: str, stamps_ns: Int64s, duration_ns: Int64s) -> PoseQuality:
+        """Return how good the poses of ``sweep`` are, for those that are known."""
+        first_ns, last_ns = stamps_ns + np.minimum(duration_ns, 0), stamps_ns + np.maximum(duration_ns, 0)
+        moving = laser if self._topic is None else _POSED
+        return PoseQuality(
+            *self._deviations.at(stamps_ns), jumps(self._buffer, self._map_frame, moving, first_ns, last_ns)
+        )
+
     def kept(self) -> State:
         """Poses and moving transforms, for `restore`."""
-        return {"child": self._child, **self._buffer.kept()}
+        return {
+            "child": self._child,
+            **self._buffer.kept(),
+            **prefixed("deviations", self._deviations.kept()),
+        }
 
     def restore(self, state: State) -> None:
         """Take over what another source kept; this one must have nothing but static transforms."""
         self._child = state["child"]
         self._buffer.restore(state)
+        self._deviations.restore(without_prefix("deviations", state))
 
     def forget(self, before_ns: int) -> None:
         """Drop what look-ups from ``before_ns`` on do not need."""
         self._buffer.forget(before_ns)
+        self._deviations.forget(before_ns)
 
     def forget_all_but(self, span_ns: int) -> None:
         """Drop what lies more than ``span_ns`` behind the newest of its kind."""
         self._buffer.forget_all_but(span_ns)
+        self._deviations.forget_all_but(span_ns)
 
     def _base(self, laser: str) -> str:
         """The frame that the topic's poses are of."""

@@ -7,7 +7,9 @@ import numpy as np
 from timemap_cli.logs.batches import BeamLayout, Float64s, Int64s, ScanBatch
 from timemap_cli.logs.beams import BeamCounts, Beams
 from timemap_cli.logs.irregularities import pose_problems, time_problems
+from timemap_cli.logs.pose_quality import PoseLimits, PoseQuality, PoseReport, report
 from timemap_cli.logs.poses import PoseSource
+from timemap_cli.logs.scan_window import sweep_durations
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,13 +27,17 @@ class ScanTopic:
     beams: BeamCounts
     with_pose: int  # scans
     found: tuple[str, ...]  # about its beams, in words
+    pose_report: PoseReport | None  # None: no scan has a pose
 
 
 class ScanStatistics:
     """Takes in the scans of a topic and looks up their poses as soon as the transforms around them are there."""
 
-    def __init__(self, topic: str, beams: Beams | None, source: PoseSource | None) -> None:
+    def __init__(
+        self, topic: str, beams: Beams | None, source: PoseSource | None, limits: PoseLimits
+    ) -> None:
         self.source = source
+        self._limits = limits
         self._topic = topic
         self._beams = beams
         self._counts = BeamCounts()
@@ -39,8 +45,9 @@ class ScanStatistics:
         self._frames: dict[str, int] = {}
         self._stamps: list[Int64s] = []
         self._log: list[Int64s] = []
-        self._waiting: list[tuple[str, Int64s, Int64s]] = []  # frame, stamps, log times
+        self._waiting: list[tuple[str, Int64s, Int64s, Int64s]] = []  # frame, stamps, log times, sweeps
         self._posed: list[tuple[Int64s, Float64s]] = []
+        self._quality: list[PoseQuality] = []
         self.oldest_needed_ns = 0
 
     def add(self, batch: ScanBatch) -> None:
@@ -50,26 +57,27 @@ class ScanStatistics:
         self._frames[batch.frame_id] = self._frames.get(batch.frame_id, 0) + count
         self._stamps.append(batch.stamps_ns)
         self._log.append(batch.log_ns)
-        self._waiting.append((batch.frame_id, batch.stamps_ns, batch.log_ns))
+        self._waiting.append((batch.frame_id, batch.stamps_ns, batch.log_ns, sweep_durations(batch)))
         if self._beams is not None:
             self._counts += self._beams.count(batch.ranges, batch.range_max)
 
     def waits_since(self, log_ns: int) -> bool:
         """Whether a scan recorded before a log time waits for its pose."""
-        return any(bool((log < log_ns).any()) for _, _, log in self._waiting)
+        return any(bool((log < log_ns).any()) for _, _, log, _ in self._waiting)
 
     def look_up(self, until_ns: int | None) -> None:
         """Find the poses of scans recorded before a log time, of all if it is None."""
         waiting, self._waiting = self._waiting, []
-        for frame, stamps, log in waiting:
+        for frame, stamps, log, sweeps in waiting:
             due = np.ones(len(log), dtype=bool) if until_ns is None else log < until_ns
             if due.any() and self.source is not None:
                 map_from_laser, known = self.source.lookup(frame, stamps[due])
                 self._posed.append((stamps[due][known], map_from_laser[known]))
+                self._quality.append(self.source.quality(frame, stamps[due], sweeps[due]).rows(known))
             if not due.all():
-                self._waiting.append((frame, stamps[~due], log[~due]))
+                self._waiting.append((frame, stamps[~due], log[~due], sweeps[~due]))
             self.oldest_needed_ns = max(self.oldest_needed_ns, int(stamps[due].max(initial=0)))
-        pending = [int(stamps.min()) for _, stamps, _ in self._waiting]
+        pending = [int(stamps.min()) for _, stamps, _, _ in self._waiting]
         self.oldest_needed_ns = min([self.oldest_needed_ns, *pending])
 
     def outcome(self) -> ScanTopic:
@@ -89,6 +97,7 @@ class ScanStatistics:
             beams=self._counts,
             with_pose=sum(len(known) for known, _ in self._posed),
             found=self._beams.found if self._beams else (),
+            pose_report=self._pose_report(),
         )
 
     def problems(self) -> list[str]:
@@ -108,6 +117,12 @@ class ScanStatistics:
             found += self._unposed(stamps, known)
             found += pose_problems(self._topic, known, poses)
         return found
+
+    def _pose_report(self) -> PoseReport | None:
+        stamps = np.concatenate([*(known for known, _ in self._posed), np.empty(0, np.int64)])
+        if self.source is None or not len(stamps):
+            return None
+        return report(stamps, PoseQuality.joined(self._quality), self._limits, self.source.covariances)
 
     def _unposed(self, stamps: Int64s, known: Int64s) -> list[str]:
         missing = len(stamps) - len(known)

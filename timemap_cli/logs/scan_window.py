@@ -188,6 +188,8 @@ class ScanWindow:
         stops = [*state["starts"], len(entries)][1:]
         for i, (values, start, stop) in enumerate(zip(state["kinds"], state["starts"], stops, strict=True)):
             kind, ranges, run = Kind(*values), state[f"ranges{i}"], slice(start, stop)
+            if ranges.shape != (stop - start, kind.count):
+                raise ValueError("ranges that are not of these scans")
             self._hold(entries[run], ranges, kind)
         self._coming, self._waiting = entries[state["coming"]], entries[~state["coming"]]
         return len(self._waiting)

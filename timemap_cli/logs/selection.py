@@ -20,9 +20,12 @@ POSE_TYPES = (
     "geometry_msgs/msg/PoseStamped",
     "nav_msgs/msg/Odometry",
 )
+WITH_COVARIANCE = (POSE_TYPES[0], POSE_TYPES[2])
 DEFAULT_MAP_FRAME = "map"
 # Poses that somebody wants or guesses, not poses of the robot.
 WISHES = ("goal", "initial", "target", "waypoint", "set_pose", "clicked")
+# Words in the names of topics on which localisers tell what they send as transforms: amcl, emcl, slam_toolbox.
+LOCALISERS = ("mcl", "localiz", "localis", "slam")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,13 @@ class Selection:
     map_frame: str
     pose: str  # "tf" or the topic of the poses
     warnings: tuple[str, ...] = ()
+    covariances: str | None = None  # the topic that tells how uncertain the poses are
+
+    @property
+    def pose_topics(self) -> tuple[str, ...]:
+        """The topics of poses to read."""
+        topics = (self.pose if self.pose != TF else None, self.covariances)
+        return tuple(dict.fromkeys(topic for topic in topics if topic))
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +79,7 @@ class PoseChoice:
     map_frame: str
     pose: str
     warnings: tuple[str, ...] = ()
+    covariances: str | None = None
 
 
 def scan_candidates(logs: Sequence[str], topics: Mapping[str, str], wanted: Sequence[str]) -> tuple[str, ...]:
@@ -105,7 +116,7 @@ def select(
     if wanted.scan_topics or len(candidates) == 1:
         scans = tuple(candidates)
         choice = choose_poses(seen, scans, wanted, works)
-        return Selection(scans, choice.map_frame, choice.pose, choice.warnings)
+        return Selection(scans, choice.map_frame, choice.pose, choice.warnings, choice.covariances)
     tried = {topic: _try_poses(seen, topic, wanted, works) for topic in candidates}
     found = {topic: choice for topic, choice in tried.items() if choice is not None}
     if len(found) != 1:
@@ -116,7 +127,8 @@ def select(
     ((topic, choice),) = found.items()
     others = ", ".join(name for name in candidates if name != topic)
     warning = f"using {topic}, the only scan topic with poses (not {others})"
-    return Selection((topic,), choice.map_frame, choice.pose, (warning, *choice.warnings))
+    warnings = (warning, *choice.warnings)
+    return Selection((topic,), choice.map_frame, choice.pose, warnings, choice.covariances)
 
 
 def choose_poses(
@@ -148,7 +160,7 @@ def _connected(seen: Seen, scans: Sequence[str], wanted: InputSettings) -> Itera
         frame = wanted.map_frame if joined else topic.frame_id
         if _reaches(seen, topic, scans):
             warnings = (*_frame_warnings(frame, wanted.map_frame), *_mount_warnings(seen, topic, lasers))
-            yield PoseChoice(frame, topic.topic, warnings)
+            yield PoseChoice(frame, topic.topic, warnings, _covariances(topic))
         return
     frames = [wanted.map_frame]
     if wanted.map_frame == DEFAULT_MAP_FRAME:
@@ -156,12 +168,12 @@ def _connected(seen: Seen, scans: Sequence[str], wanted: InputSettings) -> Itera
     for frame in frames:
         warnings = _frame_warnings(frame, wanted.map_frame)
         if _connects(seen, frame, scans):
-            yield PoseChoice(frame, TF, warnings)
+            yield PoseChoice(frame, TF, warnings, _localiser(seen, frame))
         if wanted.poses == "auto":
             for topic in _robot_poses(seen, frame):
                 if _reaches(seen, topic, scans):
                     mount = _mount_warnings(seen, topic, lasers)
-                    yield PoseChoice(frame, topic.topic, (*warnings, *mount))
+                    yield PoseChoice(frame, topic.topic, (*warnings, *mount), _covariances(topic))
 
 
 def _frame_warnings(frame: str, wanted: str) -> tuple[str, ...]:
@@ -196,6 +208,24 @@ def _robot_poses(seen: Seen, frame: str) -> list[PoseTopic]:
         return "amcl" not in pose.topic, POSE_TYPES.index(pose.msgtype), -pose.count, pose.topic
 
     return sorted(found, key=rank)
+
+
+def _covariances(topic: PoseTopic) -> str | None:
+    """The topic itself if it tells how uncertain its poses are.
+
+    Odometry's uncertainty is that of the drift since the start: it grows for ever, and says nothing of its neighbours.
+    """
+    return topic.topic if topic.msgtype in WITH_COVARIANCE and "odom" not in topic.frame_id else None
+
+
+def _localiser(seen: Seen, frame: str) -> str | None:
+    """The topic on which whoever sends the transforms to the map frame tells how uncertain they are."""
+    names = (topic.topic for topic in _robot_poses(seen, frame) if _covariances(topic))
+    return next((name for name in names if _is_of_localiser(name)), None)
+
+
+def _is_of_localiser(topic: str) -> bool:
+    return topic.rsplit("/", 1)[-1] == "pose" or any(word in topic for word in LOCALISERS)
 
 
 def _connects(seen: Seen, frame: str, scans: Sequence[str]) -> bool:

@@ -18,7 +18,8 @@ from timemap_cli.logs.batches import (
 from timemap_cli.logs.beams import Beams, settle
 from timemap_cli.logs.history import Bools
 from timemap_cli.logs.interleave import NEVER_NS, Recorded, interleaved, joined
-from timemap_cli.logs.poses import TF, PoseSource, transform_topics
+from timemap_cli.logs.pose_quality import NO_LIMITS, PoseLimits
+from timemap_cli.logs.poses import PoseSource, transform_topics
 from timemap_cli.logs.scan_window import (
     BEGINNING_NS,
     MAX_SWEEP_NS,
@@ -68,7 +69,7 @@ class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
     Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
-    10 s behind the newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``.
+    10 s behind the newest), ``duplicate`` (topic and stamp of another scan), ``no_pose``, and those of ``PoseLimits``.
     """
 
     read: int = 0
@@ -90,6 +91,7 @@ def sweeps(
     start_ns: int | None = None,
     end_ns: int | None = None,
     drives: Sequence[Sequence[int]] | None = None,
+    limits: PoseLimits = NO_LIMITS,
     earlier: State | None = None,
 ) -> Iterator[Coming]:
     """Yield the scans of the selection in blocks, placed in the map frame; ``counts`` grows with them.
@@ -98,8 +100,8 @@ def sweeps(
     Recordings of one of the ``drives`` are merged, with common transforms: where not given, those that
     overlap or follow within 10 s. Within a
     drive the scans come in stamp order; one drive follows the other. ``start_ns`` (closed) and ``end_ns``
-    (open) cut by the scans' stamps; static transforms count wherever they stand. Which scans share a block
-    has no bearing on any value.
+    (open) cut by the scans' stamps; static transforms count wherever they stand. Scans whose pose is worse than
+    the ``limits`` are left out. Which scans share a block has no bearing on any value.
 
     ``earlier`` is what an earlier replay of the same selection left `Waiting`: the scans go on as if its recordings
     stood before these.
@@ -107,7 +109,7 @@ def sweeps(
     span_ns = (BEGINNING_NS if start_ns is None else start_ns, NEVER_NS if end_ns is None else end_ns)
     groups = drives or joined(recordings, WINDOW_NS)
     static = _static_transforms(recordings, counts, earlier)
-    begin = partial(_Drive, recordings, selection, beams, counts, span_ns)
+    begin = partial(_Drive, recordings, selection, beams, counts, span_ns, limits)
     goes_on = earlier is not None and recordings[groups[0][0]].start_ns <= earlier["log_end_ns"] + WINDOW_NS
     if earlier is not None:
         if not goes_on:
@@ -136,16 +138,18 @@ class _Drive:
         beams: Mapping[tuple[int, str], Beams],
         counts: ScanCounts,
         span_ns: tuple[int, int],
+        limits: PoseLimits,
         poses: PoseSource,
         earlier: State | None = None,
     ) -> None:
         self._recordings = recordings
         self._rank = {topic: rank for rank, topic in enumerate(selection.scan_topics)}
-        self._pose_topics = () if selection.pose == TF else (selection.pose,)
+        self._pose_topics = selection.pose_topics
         self._beams = dict(beams)
         self._counts = counts
         self._end_ns = span_ns[1]
         self._poses = poses
+        self._limits = limits
         self._window = ScanWindow(span_ns)
         self._frame_codes: dict[str, int] = {}
         self._newest_ns: dict[int, int] = {}  # recording -> largest stamp of its scans
@@ -279,6 +283,8 @@ class _Drive:
         first, last, known = self._look_up(entries)
         self._counts.drop("no_pose", len(known) - int(np.count_nonzero(known)))
         entries, first, last = entries[known], first[known], last[known]
+        good = self._good(entries)
+        entries, first, last = entries[good], first[good], last[good]
         over = sorted(end for end in self._ends if end[0] < limit_ns)
         self._ends = [end for end in self._ends if end[0] >= limit_ns]
         begin = 0
@@ -300,6 +306,18 @@ class _Drive:
             if len(rows):
                 first[rows], last[rows], known[rows] = self._poses.sweep(frame, stamps_ns, durations_ns)
         return first, last, known
+
+    def _good(self, entries: Entries) -> Bools:
+        """Which scans (n,), whose poses are known, have poses within the limits; the others are counted."""
+        good = np.ones(len(entries), dtype=bool)
+        for frame, code in self._frame_codes.items():
+            rows = np.flatnonzero(entries["frame"] == code)
+            if len(rows) and self._limits != NO_LIMITS:
+                quality = self._poses.quality(frame, entries["stamp"][rows], entries["sweep"][rows])
+                for reason, worse in self._limits.set_aside(quality).items():
+                    self._counts.drop(reason, int(np.count_nonzero(worse)))
+                    good[rows[worse]] = False
+        return good
 
     def _cut(self, entries: Entries, first: Float64s, last: Float64s) -> Iterator[Sweeps]:
         for kind, run in self._window.cut(entries, MOST_SCANS, MOST_BYTES):
@@ -329,7 +347,7 @@ def _poses(
     selection: Selection, static: StaticTransforms, group: Sequence[int], earlier: State | None
 ) -> PoseSource:
     """The poses of a drive so far: the static transforms, and what an earlier replay kept of it."""
-    poses = PoseSource(selection.map_frame, selection.pose)
+    poses = PoseSource(selection.map_frame, selection.pose, selection.covariances)
     for batch in static.of_drive(group, goes_on=earlier is not None):
         poses.add(batch)
     if earlier is not None:

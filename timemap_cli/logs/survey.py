@@ -1,12 +1,13 @@
 """What a replay needs to know before it starts, found out from a small sample of the recordings."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, pairwise
 
 import numpy as np
 
-from timemap_cli.config import InputSettings, Settings
+from timemap_cli.config import GateSettings, InputSettings, Settings
 from timemap_cli.errors import UsageError
 from timemap_cli.logs.batches import PoseBatch, ScanBatch, TransformBatch
 from timemap_cli.logs.beams import BeamCounts, Beams, settle
@@ -14,6 +15,7 @@ from timemap_cli.logs.drives import Drive
 from timemap_cli.logs.frames import Frames
 from timemap_cli.logs.interleave import joined
 from timemap_cli.logs.missing_returns import MissingReturns, examine
+from timemap_cli.logs.pose_quality import PoseLimits
 from timemap_cli.logs.poses import TF, PoseSource
 from timemap_cli.logs.recordings import Recording
 from timemap_cli.logs.sampling import Sample, take_sample
@@ -44,6 +46,7 @@ class Survey:
         tuple[int, int], ...
     ]  # begin and end of each recording that has scans, in time of their stamps
     drives: tuple[Drive, ...]  # recordings that are merged and share their transforms
+    pose_limits: PoseLimits  # how good a scan's pose must be
 
     @property
     def span_ns(self) -> tuple[int, int]:
@@ -121,7 +124,13 @@ def survey_sample(
         *_short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
-    return Survey(selection, beams, counts, missing, so_far, problems, spans_ns, sample.drives)
+    limits = pose_limits(settings.gate)
+    return Survey(selection, beams, counts, missing, so_far, problems, spans_ns, sample.drives, limits)
+
+
+def pose_limits(gate: GateSettings) -> PoseLimits:
+    """How good the settings want poses to be."""
+    return PoseLimits(gate.max_position_std, math.radians(gate.max_yaw_std_deg), gate.max_jump)
 
 
 def _with_damage(error: UsageError, recordings: Sequence[Recording]) -> UsageError:

@@ -9,7 +9,7 @@ well as up. tf2 forgets after 10 s and so never interpolates across a longer gap
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,15 +68,18 @@ class TransformBuffer:
         is_new = child not in self._static and child not in self._moving
         return is_new and len(self._static) + len(self._moving) >= MOST_FRAMES
 
-    def lookup(self, target: str, source: str, stamps_ns: Int64s) -> tuple[Float64s, Bools]:
+    def lookup(
+        self, target: str, source: str, stamps_ns: Int64s, held: Mapping[str, Int64s] | None = None
+    ) -> tuple[Float64s, Bools]:
         """Return ``target_from_source`` (n, 3, 4) at the stamps (n,), and where (n,) it is known.
 
-        NaN elsewhere. A frame nobody ever mentioned is connected to itself alone.
+        NaN elsewhere. A frame nobody ever mentioned is connected to itself alone. ``held`` gives other stamps (n,)
+        for the edges of some children.
         """
         count = len(stamps_ns)
         result = np.full((count, 3, 4), np.nan)
         valid = np.zeros(count, dtype=bool)
-        climb = _Climb(self, stamps_ns)
+        climb = _Climb(self, stamps_ns, held)
         for rows, up in climb.paths(source, {target}, np.arange(count)):
             for some, down in climb.paths(target, up, rows):
                 if down[-1] in up:
@@ -85,6 +88,18 @@ class TransformBuffer:
                     result[some] = compose(target_from_common, common_from_source)
                     valid[some] = True
         return result, valid
+
+    def moving_edges(self, target: str, source: str, stamps_ns: Int64s) -> tuple[str, ...]:
+        """Return the children of the moving edges that a look-up at the stamps (n,) reads."""
+        climb = _Climb(self, stamps_ns)
+        for rows, up in climb.paths(source, {target}, np.arange(len(stamps_ns))):
+            for _ in climb.paths(target, up, rows):
+                pass
+        return tuple(child for child in climb.children if child in self._moving)
+
+    def around(self, child: str, first_ns: Int64s, last_ns: Int64s) -> tuple[Int64s, Int64s]:
+        """Return the stamps (n,) of the samples of a moving edge that enclose the times; see ``History.around``."""
+        return self._moving[child].around(first_ns, last_ns)
 
     def kept(self) -> State:
         """The moving transforms, for `restore`."""
@@ -150,10 +165,18 @@ class TransformBuffer:
 class _Climb:
     """Ways from a frame towards the root at many stamps; every edge is read once."""
 
-    def __init__(self, buffer: TransformBuffer, stamps_ns: Int64s) -> None:
+    def __init__(
+        self, buffer: TransformBuffer, stamps_ns: Int64s, held: Mapping[str, Int64s] | None = None
+    ) -> None:
         self._buffer = buffer
         self._stamps_ns = stamps_ns
+        self._held = held or {}
         self._edges: dict[str, tuple[Int32s, Float64s]] = {}
+
+    @property
+    def children(self) -> tuple[str, ...]:
+        """Frames whose edges were read so far."""
+        return tuple(self._edges)
 
     def paths(self, start: str, stop: Collection[str], rows: Rows) -> Iterator[tuple[Rows, Path]]:
         """Yield the ways up from ``start`` to one of ``stop`` or to where nothing leads on."""
@@ -182,5 +205,5 @@ class _Climb:
 
     def _edge(self, child: str) -> tuple[Int32s, Float64s]:
         if child not in self._edges:
-            self._edges[child] = self._buffer.edge(child, self._stamps_ns)
+            self._edges[child] = self._buffer.edge(child, self._held.get(child, self._stamps_ns))
         return self._edges[child]

@@ -16,7 +16,7 @@ MIN_STEP = 200  # [mm] what differs by less does not contradict: poses off by 0.
 MIN_STEP_SHARE = 0.03  # ... nor by a smaller share of the range: a heading error at a slanted wall
 CLEAR_MARGIN = 2  # in steps: a surface so close to the radius may be clear at the next look
 MIN_VIEW = 60 / 360  # of the circle: where both know less nothing is decided
-MIN_SUPPORT = 0.5  # of what is known of an angle bin, behind a firm range
+MIN_SUPPORT = 0.5  # of a firm range
 
 _ANYTHING = 65535  # width of bounds that say nothing
 
@@ -81,10 +81,8 @@ def firm_ranges(estimates: Sequence[Estimate], min_samples: int) -> Ranges:
     """Ranges (estimates, angle_bins) [mm] or CLEAR, and UNSEEN where the estimate has too little behind it."""
     metres = np.stack([found.ranges for found in estimates])
     support = np.stack([found.support for found in estimates])
-    against = 1 - np.stack([found.plausibility for found in estimates])
     samples = np.stack([found.samples for found in estimates])
-    firm = (samples >= min_samples) & (support * (1 - MIN_SUPPORT) >= against * MIN_SUPPORT)
-    firm &= ~np.isnan(metres)
+    firm = (samples >= min_samples) & (support >= MIN_SUPPORT) & ~np.isnan(metres)
     finite = np.isfinite(metres)
     ranges = np.full(metres.shape, CLEAR, np.uint16)
     ranges[finite] = np.rint(metres[finite] * 1000)

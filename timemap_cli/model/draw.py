@@ -69,6 +69,7 @@ class Draw:
     def __init__(self, level: Level) -> None:
         self._level = level
         self._reached = np.zeros(0, np.int64)  # scans that reached the level
+        self._all_due = np.zeros(0, np.int64)  # of what was due for them and a scan could fill [2^-32]
         self._sum = np.zeros(0, np.int64)  # of their shares [2^-32]
         self._next = np.zeros(0, np.int64)  # first turn in which no scan was taken yet
         self._stamp = np.zeros(0, np.int64)  # [ns] the newest scan that reached the level
@@ -82,20 +83,23 @@ class Draw:
 
     def add_nodes(self, nodes: int) -> None:
         """Make room for so many nodes in all."""
-        for name, empty in (("_reached", 0), ("_sum", 0), ("_next", 0), ("_stamp", _NEVER)):
+        for name, empty in (("_reached", 0), ("_all_due", 0), ("_sum", 0), ("_next", 0), ("_stamp", _NEVER)):
             array = getattr(self, name)
             setattr(self, name, np.append(array, np.full(nodes - len(array), empty, np.int64)))
         self._owed = np.append(self._owed, np.zeros(nodes - len(self._owed)))
 
+    @property
+    def _counts(self) -> tuple[Ints, ...]:
+        return (self._reached, self._all_due, self._sum, self._next, self._stamp)
+
     def kept(self, node: int) -> State:
         """What the draw holds of a node, for `restore`."""
-        counts = [int(array[node]) for array in (self._reached, self._sum, self._next, self._stamp)]
+        counts = [int(array[node]) for array in self._counts]
         return {"draw": np.array(counts, np.int64), "owed": float(self._owed[node])}
 
     def restore(self, node: int, state: State) -> None:
         """Take over what another draw kept of a node."""
-        arrays = (self._reached, self._sum, self._next, self._stamp)
-        for array, value in zip(arrays, state["draw"].tolist(), strict=True):
+        for array, value in zip(self._counts, state["draw"].tolist(), strict=True):
             array[node] = value
         self._owed[node] = state["owed"]
 
@@ -125,17 +129,22 @@ class Draw:
         return np.asarray(taken)
 
     def _shares(self, groups: Groups, stamps_ns: Ints) -> Ints:
-        """Share of a turn that each scan fills [2^-32]: more than its due while the memory is young.
+        """Share of a turn that each scan fills [2^-32]: while the memory is young as much as any other before it.
 
-        Else four scans would decide a memory of a hundred places.
+        Else four scans would decide a memory of a hundred places. It is young until all that was due has
+        filled a window: in time a scan's own due says little, for it may be a hundredth of the next one's.
         """
         reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
-        young = np.minimum(1.0, self._level.window / reached)
         due = self._due(groups, stamps_ns)
         granted = self._granted_to(groups, due)
+        all_due = groups.running_sums(np.asarray(np.rint(granted * _ONE), np.int64), self._all_due)
         self._wanted += float(due.sum())
         self._granted += float(granted.sum())
-        return np.asarray(np.rint(np.maximum(young, granted) * _ONE), np.int64)
+        window = self._level.window
+        young = (reached <= window) | (all_due < window * _ONE)
+        return np.asarray(
+            np.rint(np.where(young, np.minimum(1.0, window / reached), granted) * _ONE), np.int64
+        )
 
     def _granted_to(self, groups: Groups, due: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """What each scan fills of what is due, at most 1; it leaves the rest, of one longest step at most, to the next.

@@ -10,6 +10,7 @@ from timemap_cli.model.chains import best_states
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States, ascending, states_from_data
 from timemap_cli.model.status import Codes, statuses
+from timemap_cli.model.support import support
 from timemap_cli.model.virtual_scan import Ranges
 from timemap_cli.model.vote import Forbidding, Shares, shares, votes
 
@@ -22,8 +23,8 @@ class Estimated:
     """Estimates of m nodes at one level."""
 
     ranges: Ranges  # (m, angle_bins) [mm], measured ones or CLEAR or UNSEEN
-    support: Floats  # (m, angle_bins) share of the window that agrees
-    plausibility: Floats  # (m, angle_bins) share of the window that does not contradict
+    support: Floats  # (m, angle_bins) share of what is known that agrees
+    known: Floats  # (m, angle_bins) share of the window that is known
     samples: Ints  # (m, angle_bins) remembered ranges
     status: Codes  # (m, angle_bins) a `Status` each
 
@@ -42,14 +43,12 @@ def estimate(memory: Remembered, state_width: float) -> Estimated:
 
 def assembled(memory: Remembered, states: States, share: Shares, best: Ints) -> Estimated:
     """Put together what the chosen states `best` (rows,) say."""
-    support = share.known.copy()
-    support[states.rows] = share.states[np.arange(len(best)), best]
-    plausibility = 1 - (share.known - support)
+    ranges = _measured(memory, states, best)
     shape = memory.n_samples.shape
     return Estimated(
-        _measured(memory, states, best).reshape(shape),
-        support.reshape(shape),
-        plausibility.reshape(shape),
+        ranges.reshape(shape),
+        support(memory, share, ranges).reshape(shape),
+        share.known.reshape(shape),
         memory.n_samples,
         statuses(memory, states, share, best).reshape(shape),
     )

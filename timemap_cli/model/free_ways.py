@@ -2,10 +2,12 @@
 
 A robot that sees 180 degrees seldom sees the node that it stands beside. But a near node may as well stand on the
 other side of a wall. The way is free where the robot stands, where this scan or one of those shortly before it saw
-past, and where the robot itself has just driven.
+past, and where the robot itself has just driven. Several scanners of a robot look to different sides: what one has
+seen counts for the others.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +27,7 @@ KEPT_VIEWS = 16  # so many earlier scans are looked at ...
 KEPT_TRAVEL = 0.2  # [m] ... each so far from the one before it ...
 COS_KEPT_TURN = math.sqrt(0.75)  # ... or turned by 30 degrees
 LONGEST_MOVE = 2.0  # [m] between two scans; more is a jump of the pose, or a gap in the recording
+LONGEST_PAUSE_NS = 1_000_000_000  # between scans of two scanners, in which the robot stays where it is
 
 _STEPS = 24  # of a way
 _CELL = math.radians(2)  # of a view; a narrower gap is not seen through
@@ -90,10 +93,48 @@ class _Fan:
 class _Trail:
     """What a scanner saw on its way here."""
 
+    fan: _Fan
     kept: _Views
     x: float  # [m] where the newest scan was taken
     y: float
     stamp_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What n scans of one scanner know of the ways around them."""
+
+    sweeps: Sweeps
+    fan: _Fan
+    views: _Views  # of the scans themselves
+    kept: _Views  # of the scanner, until now
+    begin: Ints  # (n,) the first of those that a scan may look at
+    end: Ints  # (n,) behind the last of them
+    others: Sequence[_Trail]  # of the robot's other scanners
+
+    def free(self, rows: Ints, centres: Floats) -> Bools:
+        """Whether the way from the laser to the node centre (k, 2) [m, map frame] is free, of the scans `rows` (k,)."""
+        views = self.views.rows(rows)
+        way = _points(views.origin, centres)
+        passed = _inside(way, views, self.fan)
+        begin, end = self.begin[rows], self.end[rows]
+        doubtful = np.flatnonzero(~passed.all(axis=1))
+        for back in range(1, KEPT_VIEWS + 1):
+            doubtful = doubtful[~passed[doubtful].all(axis=1) & (end[doubtful] - back >= begin[doubtful])]
+            if not len(doubtful):
+                break
+            passed[doubtful] |= _inside(way[doubtful], self.kept.rows(end[doubtful] - back), self.fan)
+        for trail in self.others:
+            doubtful = np.flatnonzero(~passed.all(axis=1))
+            passed[doubtful] |= _seen_by_another(trail, self.sweeps.rows(rows[doubtful]), way[doubtful])
+        return np.asarray(passed.all(axis=1))
+
+    def are_blocked(self, rows: Ints, centres: Floats) -> Bools:
+        """Whether the scans `rows` (k,) hit something between the laser and the centre (k, 2) [m, map frame]."""
+        views = self.views.rows(rows)
+        offset = (centres - views.origin)[:, None]
+        depth, distance = _towards(offset[..., 0], offset[..., 1], views, self.fan)
+        return np.asarray((depth >= 0) & (depth < distance))[:, 0]
 
 
 class FreeWays:
@@ -102,30 +143,20 @@ class FreeWays:
     def __init__(self) -> None:
         self._trails: dict[int, _Trail] = {}
 
-    def free(self, sweeps: Sweeps, centres: Floats) -> Bools:
-        """Whether the way from the laser to the node centre (n, 2) [m, map frame] is free, for each of n scans (n,).
-
-        Blocks must come in stamp order.
-        """
+    def look(self, sweeps: Sweeps) -> "Outlook":
+        """What the scans of a block know of the ways around them. Blocks must come in stamp order."""
         fan = _Fan.of(sweeps.bearings)
         views = _Views(*_placed(sweeps), fan.depths(sweeps))
-        kept, begin, end = self._keep(sweeps, views)
-        way = _points(views.origin, centres)
-        passed = _inside(way, views, fan)
-        doubtful = np.flatnonzero(~passed.all(axis=1))
-        for back in range(1, KEPT_VIEWS + 1):
-            doubtful = doubtful[~passed[doubtful].all(axis=1) & (end[doubtful] - back >= begin[doubtful])]
-            if not len(doubtful):
-                break
-            passed[doubtful] |= _inside(way[doubtful], kept.rows(end[doubtful] - back), fan)
-        return np.asarray(passed.all(axis=1))
+        others = [trail for scanner, trail in self._trails.items() if scanner != sweeps.scanner]
+        return Outlook(sweeps, fan, views, *self._keep(sweeps, views, fan), others)
 
     def kept(self) -> State:
         """The views of all scanners, for `restore`."""
         state: State = {"scanners": list(self._trails)}
         for scanner, trail in self._trails.items():
+            fan = trail.fan.first, trail.fan.step, trail.fan.beams, trail.fan.group
             views = {"origin": trail.kept.origin, "along": trail.kept.along, "depth": trail.kept.depth}
-            here = {"place": np.array((trail.x, trail.y)), "stamp_ns": trail.stamp_ns}
+            here = {"place": np.array((trail.x, trail.y)), "stamp_ns": trail.stamp_ns, "fan": list(fan)}
             state |= prefixed(str(scanner), views | here)
         return state
 
@@ -135,13 +166,13 @@ class FreeWays:
             found = without_prefix(str(scanner), state)
             views = _Views(found["origin"], found["along"], found["depth"])
             x, y = found["place"].tolist()
-            self._trails[scanner] = _Trail(views, x, y, found["stamp_ns"])
+            self._trails[scanner] = _Trail(_Fan(*found["fan"]), views, x, y, found["stamp_ns"])
 
-    def _keep(self, sweeps: Sweeps, views: _Views) -> tuple[_Views, Ints, Ints]:
+    def _keep(self, sweeps: Sweeps, views: _Views, fan: _Fan) -> tuple[_Views, Ints, Ints]:
         """The views kept before and in this block, and which of them each scan may look at: [begin, end) (n,)."""
         trail = self._trails.get(sweeps.scanner)
         if trail is None or trail.kept.depth.shape[1] != views.depth.shape[1]:
-            trail = _Trail(views.rows(slice(0, 0)), math.inf, math.inf, 0)
+            trail = _Trail(fan, views.rows(slice(0, 0)), math.inf, math.inf, 0)
         chosen: list[int] = []
         begin, end = np.zeros(len(sweeps), np.int64), np.zeros(len(sweeps), np.int64)
         first, before = 0, len(trail.kept.origin)
@@ -158,7 +189,7 @@ class FreeWays:
             x, y, stamp_ns = row[0], row[1], now_ns
         kept = trail.kept.then(views.rows(np.array(chosen, np.int64)))
         stays = slice(max(first, len(kept.origin) - KEPT_VIEWS), None)
-        self._trails[sweeps.scanner] = _Trail(kept.rows(stays), x, y, stamp_ns)
+        self._trails[sweeps.scanner] = _Trail(fan, kept.rows(stays), x, y, stamp_ns)
         return kept, begin, end
 
 
@@ -183,6 +214,34 @@ def _points(origin: Floats, centres: Floats) -> Floats:
     return np.asarray(origin[:, None] + part * (centres - origin)[:, None])
 
 
+def _seen_by_another(trail: _Trail, sweeps: Sweeps, way: Floats) -> Bools:
+    """Steps (n, steps) of each scan's way that another scanner of the robot has seen free until now.
+
+    The robot itself lies between the two: there is no wall.
+    """
+    lasers = sweeps.map_from_laser_first[:, :2, 3]
+    there = np.array((trail.x, trail.y))
+    passed = np.zeros((len(way), _STEPS), np.bool_)
+    since_ns = sweeps.stamps_ns - trail.stamp_ns
+    away = np.sqrt(((lasers - there) ** 2).sum(axis=1))
+    rows = np.flatnonzero((since_ns >= 0) & (away <= LONGEST_MOVE))
+    for one in range(len(trail.kept.origin) if len(rows) else 0):
+        passed[rows] |= _inside(way[rows], trail.kept.rows(np.full(len(rows), one)), trail.fan)
+    rows = rows[since_ns[rows] <= LONGEST_PAUSE_NS]
+    passed[rows] |= _between(way[rows], lasers[rows, None], there)
+    return passed
+
+
+def _between(way: Floats, one: Floats, other: Floats) -> Bools:
+    """Steps (n, steps) of each way whose two ends lie as near to the line from one place to the other as the robot."""
+    along = other - one
+    length = (along**2).sum(axis=2)
+    share = ((way - one) * along).sum(axis=2) / np.where(length > 0, length, 1)
+    foot = one + np.clip(share, 0, 1)[..., None] * along
+    holds = ((way - foot) ** 2).sum(axis=2) <= ROBOT_RADIUS**2
+    return np.asarray(holds[:, :-1] & holds[:, 1:])
+
+
 def _inside(way: Floats, views: _Views, fan: _Fan) -> Bools:
     """Steps (n, steps) of each way whose two ends one view holds: no wall fits in between.
 
@@ -190,10 +249,17 @@ def _inside(way: Floats, views: _Views, fan: _Fan) -> Bools:
     """
     dx, dy = (way[:, :, axis] - views.origin[:, None, axis] for axis in (0, 1))
     holds = dx * dx + dy * dy <= ROBOT_RADIUS**2
+    depth, distance = _towards(dx, dy, views, fan)
+    with np.errstate(invalid="ignore"):
+        holds |= depth > distance
+    return np.asarray(holds[:, :-1] & holds[:, 1:])
+
+
+def _towards(dx: Floats, dy: Floats, views: _Views, fan: _Fan) -> tuple[npt.NDArray[np.float32], Floats]:
+    """How far each view saw towards points (n, k) [m, from the laser, map frame], and how far they are in its plane."""
     (xx, xy), (yx, yy) = views.along.transpose(1, 2, 0)[..., None]
     upright = xx * yy - xy * yx
     with np.errstate(divide="ignore", invalid="ignore"):  # a laser whose plane is vertical sees no way
         u, v = (yy * dx - xy * dy) / upright, (xx * dy - yx * dx) / upright
         cell = fan.cells_towards(u, v)
-        holds |= np.take_along_axis(views.depth, cell, axis=1) > np.sqrt(u * u + v * v)
-    return np.asarray(holds[:, :-1] & holds[:, 1:])
+        return np.take_along_axis(views.depth, cell, axis=1), np.sqrt(u * u + v * v)

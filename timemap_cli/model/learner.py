@@ -130,4 +130,4 @@ class Learner:
             return []
         estimates = self._map.estimates()
         self._guard.expect(found for found in estimates if found.level == self._map.levels[-1])
-        return [Round(estimates, self._newest_ns, len(self._map.nodes))]
+        return [Round(estimates, self._newest_ns, len(self._map.nodes))] if estimates else []

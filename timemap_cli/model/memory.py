@@ -197,6 +197,8 @@ class Memory:
             return
         self._make_room(np.array([node]))
         row = int(self._row[node])
+        if max(state[name].max() for name in ("n_samples", "n_pairs")) > self.level.window:
+            raise ValueError("more than a window holds")
         for name, array in self._by_row().items():
             array[row] = state[name]
         for name, array in (self._samples_by_row() | self._pairs_by_row()).items():

@@ -7,13 +7,15 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.elementary import bearings
-from timemap_cli.model.free_ways import FreeWays
+from timemap_cli.model.free_ways import FreeWays, Outlook
 from timemap_cli.model.gate import Gate, Passage, Passages, passing
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import NO_NODE, Placement
 from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
 from timemap_cli.model.virtual_scan import Bools, Ranges, virtual_scans
+
+CHOICES = 3  # nodes that are tried for a scan: the nearest, and farther ones if it stands behind a wall
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -60,6 +62,19 @@ def gathered(some: Sequence[Observations]) -> Observations:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What becomes of n scans; filled in as it is found out."""
+
+    nodes: Ints  # (n,)
+    judged: Bools  # (n,) the scan says something of its node
+    ranges: Ranges  # (n, angle_bins) [mm]
+
+    @classmethod
+    def nothing(cls, n: int, angle_bins: int) -> "_Seen":
+        return cls(np.full(n, NO_NODE), np.zeros(n, np.bool_), np.empty((n, angle_bins), np.uint16))
+
+
 class Observer:
     """Gives every scan to its node and turns it into what it would have been from there."""
 
@@ -103,24 +118,65 @@ class Observer:
     def observe(self, sweeps: Sweeps) -> Observations:
         """Observations from a block of scans; blocks must come in stamp order."""
         places = _places(sweeps)
-        nodes = self._placement.assign(places[:, :2])
-        near = np.flatnonzero(nodes != NO_NODE)
-        towards = self._placement.centres_of(nodes)
-        free = self._ways.free(sweeps, towards)
-        ranges, judged = virtual_scans(
-            sweeps.rows(near), towards[near], free[near], self._angle_bins, self._radius
-        )
-        rows = near[judged]
-        nodes, stamps_ns = nodes[rows], sweeps.stamps_ns[rows]
+        seen = self._seen(sweeps, places[:, :2])
+        rows = np.flatnonzero(seen.judged)
+        nodes, stamps_ns = seen.nodes[rows], sweeps.stamps_ns[rows]
+        near = int(np.count_nonzero(seen.nodes != NO_NODE))
         return Observations(
             nodes,
             stamps_ns,
-            ranges[judged],
+            seen.ranges[rows],
             passing(self._gate, nodes.tolist(), places[rows], stamps_ns, self._passages, sweeps.scanner),
-            node_not_seen=len(near) - len(rows),
-            no_node=len(sweeps) - len(near),
+            node_not_seen=near - len(rows),
+            no_node=len(sweeps) - near,
             all_nodes=self._placement.nodes,
         )
+
+    def _seen(self, sweeps: Sweeps, places: Floats) -> "_Seen":
+        """Give each scan to the nearest node that it can judge; where walls hide all of them, to a new one.
+
+        `places` (n, 2) [m, map frame]. A new node changes what becomes of later scans: they begin anew.
+        """
+        seen = _Seen.nothing(len(sweeps), self._angle_bins)
+        ways = self._ways.look(sweeps)
+        begin = 0
+        while begin < len(sweeps):
+            rows = np.arange(begin, len(sweeps))
+            seen.nodes[rows], known = self._placement.assign(places[rows])
+            hidden = self._judge(seen, rows[seen.nodes[rows] != NO_NODE], sweeps, ways)
+            hidden = hidden[ways.are_blocked(hidden, self._placement.centres_of(seen.nodes[hidden]))]
+            hidden = self._judge_farther(seen, hidden, known[hidden - begin], places, sweeps, ways)
+            number = int(known[hidden[0] - begin]) if len(hidden) else 0
+            if not len(hidden) or not self._placement.may_insert(number):
+                break
+            begin = int(hidden[0])
+            self._placement.insert(places[begin], number)
+        return seen
+
+    def _judge(self, seen: "_Seen", rows: Ints, sweeps: Sweeps, ways: Outlook) -> Ints:
+        """See the nodes of the scans `rows` (k,) from their places; returns the rows that cannot judge theirs."""
+        centres = self._placement.centres_of(seen.nodes[rows])
+        free = ways.free(rows, centres)
+        seen.ranges[rows], judged = virtual_scans(
+            sweeps.rows(rows), centres, free, self._angle_bins, self._radius
+        )
+        seen.judged[rows] = judged
+        return rows[~judged]
+
+    def _judge_farther(
+        self, seen: "_Seen", hidden: Ints, known: Ints, places: Floats, sweeps: Sweeps, ways: Outlook
+    ) -> Ints:
+        """Give scans whose nearest node is `hidden` (k,) to the next that they see, of those `known` (k,) by then."""
+        for choice in range(1, CHOICES):
+            near, node = self._placement.farther(places[hidden], known, choice)
+            rows = hidden[near]
+            before = seen.nodes[rows]
+            seen.nodes[rows] = node[near]
+            still = self._judge(seen, rows, sweeps, ways)
+            seen.nodes[still] = before[np.isin(rows, still)]
+            left = ~seen.judged[hidden]
+            hidden, known = hidden[left], known[left]
+        return hidden
 
 
 def _places(sweeps: Sweeps) -> Floats:

@@ -33,12 +33,13 @@ class Placement:
         """Centres (n, 2) [m, map frame] of these nodes (n,); NaN for NO_NODE."""
         return np.vstack((self.centres, np.full(2, np.nan)))[nodes]
 
-    def assign(self, places: Floats) -> Ints:
-        """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order.
+    def assign(self, places: Floats) -> tuple[Ints, Ints]:
+        """Node (n,) of each scan taken at `places` (n, 2) [m, map frame], in this order; how many there were then (n,).
 
         NO_NODE if none is near and none may be made: all are given, there are MOST_NODES, or the place is not finite.
         """
         chosen, squared = self._nearest(places)
+        known = np.full(len(places), len(self.nodes))
         finite = np.asarray(np.isfinite(places).all(axis=1))
         start = 0
         while not self.all_given and len(self.nodes) < MOST_NODES:
@@ -46,13 +47,43 @@ class Placement:
             if not len(far):
                 break
             start += int(far[0])
-            # whole millimetres: a node's centre is a key of its random numbers
-            x, y = (round(value, 3) for value in places[start].tolist())
-            new = _squared_distances(places[start:], np.array([[x, y]]))[:, 0]
+            centre = self._make(places[start])
+            new = _squared_distances(places[start:], centre[None])[:, 0]
             nearer = start + np.flatnonzero(~(squared[start:] <= new))
-            chosen[nearer], squared[nearer] = len(self.nodes), new[nearer - start]
-            self.nodes.append(Node(x, y))
-        return np.where(squared <= self._spacing * self._spacing, chosen, NO_NODE)
+            chosen[nearer], squared[nearer] = len(self.nodes) - 1, new[nearer - start]
+            known[start:] = len(self.nodes)
+        return np.where(squared <= self._spacing * self._spacing, chosen, NO_NODE), known
+
+    def farther(self, places: Floats, known: Ints, choice: int) -> tuple[npt.NDArray[np.bool_], Ints]:
+        """Whether a place (n, 2) has so many nearer nodes and one more within reach (n,), and the number of that (n,).
+
+        `choice`: 1 for the second nearest. Only the first `known` (n,) nodes count.
+        """
+        near, node = np.zeros(len(places), np.bool_), np.full(len(places), NO_NODE)
+        centres = self.centres
+        at_once = max(1, _PAIRS_AT_ONCE // max(1, len(centres)))
+        for begin in range(0, len(places) if len(centres) > choice else 0, at_once):
+            part = slice(begin, begin + at_once)
+            squared = _squared_distances(places[part], centres)
+            squared[np.arange(len(centres)) >= known[part, None]] = np.inf
+            node[part] = np.argsort(squared, axis=1, kind="stable")[:, choice]
+            near[part] = squared[np.arange(len(squared)), node[part]] <= self._spacing * self._spacing
+        return near, node
+
+    def may_insert(self, number: int) -> bool:
+        """Whether a node of this number may be made."""
+        return not self.all_given and number < MOST_NODES
+
+    def insert(self, place: Floats, number: int) -> None:
+        """Make a node at a place (2,), to be the node of this number; what was made from there on is undone."""
+        del self.nodes[number:]
+        self._make(place)
+
+    def _make(self, place: Floats) -> Floats:
+        """Make a node and return its centre (2,): whole millimetres, as it is a key of its random numbers."""
+        x, y = (round(value, 3) for value in place.tolist())
+        self.nodes.append(Node(x, y))
+        return np.array([x, y])
 
     def _nearest(self, places: Floats) -> tuple[Ints, Floats]:
         """Nearest node (n,) of each place and the square of how far it is [m^2]; NO_NODE, inf if there is none."""

@@ -101,7 +101,7 @@ class TimeMap:
 
 def _as_estimates(nodes: Ints, level: str, memory: Remembered, found: Estimated) -> list[Estimate]:
     metres = _METRES.take(found.ranges)
-    support, plausibility = found.support.astype(np.float32), found.plausibility.astype(np.float32)
+    support, known = found.support.astype(np.float32), found.known.astype(np.float32)
     samples = found.samples.astype(np.uint16)
     return [
         Estimate(
@@ -110,7 +110,7 @@ def _as_estimates(nodes: Ints, level: str, memory: Remembered, found: Estimated)
             stamp_ns,
             metres[i],
             support[i],
-            plausibility[i],
+            known[i],
             samples[i],
             found.status[i],
             memory.last_seen_ns[i],

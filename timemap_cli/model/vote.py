@@ -30,6 +30,7 @@ class Shares:
 
     known: Floats  # (m * angle_bins,) all samples of the angle bin
     states: Floats  # (rows, states)
+    weights: npt.NDArray[np.int32]  # (m * angle_bins, most samples) [1 / SCALE]; 0: no sample
 
 
 def shares(memory: Remembered, states: States) -> Shares:
@@ -43,7 +44,7 @@ def shares(memory: Remembered, states: States) -> Shares:
     known = weight.sum(axis=1, dtype=np.int32) / full
     rows = np.arange(len(states.rows))
     per_state = _sums(states.labels(samples[states.rows], rows), weight[states.rows], states.size)
-    return Shares(known, per_state / full[states.rows, None])
+    return Shares(known, per_state / full[states.rows, None], weight)
 
 
 def votes(memory: Remembered, states: States, share: Shares) -> Ints:

@@ -2,10 +2,11 @@
 
 import json
 from dataclasses import asdict
-from math import isfinite
+from math import degrees, isfinite
 
 from timemap_cli.logs.inspect import Inspection, LogInfo, PoseInfo
 from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.logs.pose_quality import PoseReport
 from timemap_cli.logs.scan_statistics import ScanTopic
 
 
@@ -83,6 +84,21 @@ def _scan(scan: ScanTopic) -> dict[str, object]:
         "beams": asdict(scan.beams),
         "with_pose": scan.with_pose,
         "found": list(scan.found),
+        "pose_quality": _pose_quality(scan.pose_report),
+    }
+
+
+def _pose_quality(found: PoseReport | None) -> dict[str, object] | None:
+    if found is None:
+        return None
+    return {
+        "covariances": found.covariances,
+        "position_std_m": _number(found.position_std),
+        "yaw_std_deg": _number(None if found.yaw_std is None else degrees(found.yaw_std)),
+        "jumps": found.jumps,
+        "largest_jump_m": _number(found.largest_jump) if found.jumps else None,
+        "largest_jump_ns": str(found.largest_jump_ns) if found.jumps else None,
+        "set_aside": dict(found.set_aside),
     }
 
 

@@ -1,11 +1,13 @@
 """What is in recordings, as a text of one screen."""
 
 from collections.abc import Iterator, Sequence
+from math import degrees
 
 from timemap_cli.logs.beams import BeamCounts
 from timemap_cli.logs.inspect import Inspection, LogInfo, PoseInfo
 from timemap_cli.logs.irregularities import duration
 from timemap_cli.logs.missing_returns import MissingReturns
+from timemap_cli.logs.pose_quality import PoseReport
 from timemap_cli.logs.scan_statistics import ScanTopic
 from timemap_cli.times import format_time
 
@@ -52,6 +54,27 @@ def _scan(scan: ScanTopic) -> Iterator[Row]:
     for text in scan.found:
         yield "", text
     yield "", _posed(scan.with_pose, scan.count)
+    for text in _pose_quality(scan.pose_report):
+        yield "", text
+
+
+def _pose_quality(found: PoseReport | None) -> Iterator[str]:
+    """How uncertain the poses are, where they jump, and what a replay would set aside for it."""
+    if found is None:
+        return
+    if found.position_std is not None and found.yaw_std is not None:
+        yield (
+            f"poses uncertain by up to {found.position_std:.2g} m and {degrees(found.yaw_std):.2g} deg "
+            f"(one standard deviation, {found.covariances})"
+        )
+    if found.jumps:
+        largest = f"{found.largest_jump:.2g} m at {_to_the_millisecond(found.largest_jump_ns)}"
+        times = "once, by" if found.jumps == 1 else f"{found.jumps} times, by up to"
+        yield f"poses jump {times} {largest}"
+    reasons = ", ".join(f"{reason} {count}" for reason, count in found.set_aside.items() if count)
+    if reasons:
+        count = sum(found.set_aside.values())
+        yield f"{count} {_plural('scan', count)} would be set aside: {reasons}"
 
 
 def _kinds(beams: BeamCounts) -> str:

@@ -12,7 +12,7 @@ CHANGES = "timemap/changes.json"
 CHANGE_TOPIC = "/timemap/changes"
 MARKER_TOPIC = "/timemap/changes/markers"
 STATE_TOPIC = "/timemap/state"
-FORMAT = "timemap.result/1"
+FORMAT = "timemap.result/2"
 
 
 class LevelTopic(Enum):

@@ -154,7 +154,7 @@ _FIELDS = {
     ),
     STATUS: (
         "# What a level knows about each angle bin, beside the scan of the same node and stamp.\n"
-        "# The share of the level's window that is known: support + 1 - plausibility.\n"
+        "# What the scan's intensities hold is support: the share of what is known that agrees with it.\n"
         "std_msgs/Header header\n"
         "uint16[] samples        # remembered ranges\n"
         "float32[] plausibility  # share of the window that does not contradict the scan, 0..1\n"
@@ -165,6 +165,7 @@ _FIELDS = {
         "uint8[] status\n"
         "# Stamp of the newest scan, of those that the level took, that saw the angle bin; zero: none.\n"
         "builtin_interfaces/Time[] last_seen\n"
+        "float32[] known         # share of the window that is known, 0..1\n"
     ),
 }
 

@@ -51,6 +51,8 @@ def status_layout(angle_bins: int, frame_size: int) -> np.dtype[np.void]:
             ("status_padding", f"V{-angle_bins % 4}"),
             ("last_seen_count", "<u4"),
             ("last_seen", [("sec", "<i4"), ("nanosec", "<u4")], (angle_bins,)),
+            ("known_count", "<u4"),
+            ("known", "<f4", (angle_bins,)),
         ]
     )
 
@@ -77,13 +79,14 @@ def pack_statuses(estimates: Sequence[Estimate], angle_bins: int) -> Iterator[by
     """One Status per estimate, in order."""
 
     def fill(block: _Block, rows: Sequence[Estimate]) -> None:
-        for name in ("samples", "plausibility", "status", "last_seen"):
+        for name in ("samples", "plausibility", "status", "last_seen", "known"):
             block[f"{name}_count"] = angle_bins
         block["samples"] = [e.samples for e in rows]
         block["plausibility"] = [e.plausibility for e in rows]
         block["status"] = [e.status for e in rows]
         last_seen = block["last_seen"]
         last_seen["sec"], last_seen["nanosec"] = np.divmod(np.stack([e.last_seen_ns for e in rows]), NS)
+        block["known"] = [e.known for e in rows]
 
     return _pack(estimates, angle_bins, status_layout, fill)
 
@@ -111,7 +114,7 @@ def unpack_estimate(scan: bytes, status: bytes, level: str, angle_bins: int) -> 
         stamp_ns=int(s["sec"]) * NS + int(s["nanosec"]),
         ranges=s["ranges"].astype(np.float32),
         support=s["intensities"].astype(np.float32),
-        plausibility=t["plausibility"].astype(np.float32),
+        known=t["known"].astype(np.float32),
         samples=t["samples"].astype(np.uint16),
         status=t["status"].astype(np.uint8),
         last_seen_ns=t["last_seen"]["sec"].astype(np.int64) * NS + t["last_seen"]["nanosec"],

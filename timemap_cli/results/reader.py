@@ -163,7 +163,7 @@ class ResultReader:
         ranges = estimate.ranges
         reach = np.nextafter(np.float32(self.radius), np.float32(np.inf))
         sound = np.isnan(ranges) | np.isposinf(ranges) | ((ranges >= 0) & (ranges <= reach))
-        shares = np.stack((estimate.support, estimate.plausibility))
+        shares = np.stack((estimate.support, estimate.known))
         if estimate.node >= len(self.nodes) or not sound.all() or not ((shares >= 0) & (shares <= 1)).all():
             raise ValueError("an estimate that cannot be")
         return estimate

@@ -44,9 +44,10 @@ def test_where_a_surface_stands_does_not_matter_with_states_from_the_data():
     assert numbers["paper most"] > 1.2
 
 
-def test_between_support_by_known_and_plausibility_lies_the_share_of_the_past_that_agrees():
+def test_support_is_the_share_of_the_past_that_agrees_whatever_the_view():
     numbers = calibration.run(Scale.quick).numbers
-    assert numbers["mid mean of these two"] < 0.08
+    assert numbers["mid 360° support"] < 0.15
+    assert numbers["mid 240° support"] < 0.15 < 0.3 < numbers["mid 240° share of the window"]
 
 
 def test_agreement_counts_what_stood_within_ten_centimetres_and_clear_only_as_clear():
