@@ -1,4 +1,5 @@
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -144,10 +145,21 @@ def test_a_scan_beyond_what_its_recording_can_hold_does_not_make_the_others_late
     assert counts.dropped == {"ahead": 1}
 
 
-def test_equal_stamps_of_one_topic_are_the_same_scan():
-    out, counts = replayed(FakeRecording([[MOUNT, driving(0, 3), scans([1, 1, 2], first=[7, 8, 9])]]))
+@pytest.mark.parametrize(("again", "reason"), [(7, "duplicate"), (8, "same_stamp")])
+def test_of_equal_stamps_of_one_topic_the_first_scan_stays_and_the_other_is_the_same_or_lost(again, reason):
+    out, counts = replayed(FakeRecording([[MOUNT, driving(0, 3), scans([1, 1, 2], first=[7, again, 9])]]))
     assert blocks(out)[0].ranges[:, 0].tolist() == [7, 9]
-    assert counts.dropped == {"duplicate": 1}
+    assert counts.dropped == {reason: 1}
+
+
+def test_unknown_ranges_are_the_same_and_later_copies_and_other_layouts_are_not():
+    blind = np.full((2, 3), np.nan, np.float32)
+    twice = FakeRecording([[MOUNT, driving(0, 3), replace(scans([1, 1]), ranges=blind)]])
+    assert replayed(twice)[1].dropped == {"duplicate": 1}
+    late = FakeRecording([[MOUNT, driving(0, 9), scans([1, 1], first=[7, 7], log=[1, 4])]])
+    assert replayed(late)[1].dropped == {"same_stamp": 1}
+    wider = FakeRecording([[MOUNT, driving(0, 3), scans([1]), scans([1], count=5)]])
+    assert replayed(wider)[1].dropped == {"same_stamp": 1}
 
 
 def test_overlapping_recordings_are_merged_and_share_transforms():

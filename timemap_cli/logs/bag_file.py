@@ -92,12 +92,7 @@ class BagFile:
             data = np.frombuffer(content, np.uint8)
             entries = records.from_index(data, self._index(chunk.stop, len(span.counts)))
             if entries is None or {key: len(entries[key][0]) for key in entries} != span.counts:
-                whole = records.whole_records(content)
-                entries = records.walk(whole)
-                if len(whole) < len(content):
-                    self.problems.append(
-                        f"the chunk at byte {span.offset} is damaged; what comes before in it is read"
-                    )
+                entries = records.walk(self._undamaged(span.offset, content))
         except (DamagedBagError, struct.error) as error:
             self.problems.append(f"the chunk at byte {span.offset} is damaged and left out: {error}")
             return []
@@ -144,7 +139,7 @@ class BagFile:
         size = self._size
         found: dict[int, Connection] = {}
         spans: list[BagSpan] = []
-        position, chunks = header.stop, 0
+        position, chunks, announced = header.stop, 0, 0
         try:
             while position < size:
                 record = records.file_record(self._file, position)
@@ -163,6 +158,8 @@ class BagFile:
                 elif record.op == records.CONNECTION:
                     one = records.connection(record, records.record_data(self._file, record))
                     found.setdefault(one.id, one)
+                elif record.op == records.INDEX:
+                    announced += record.number("count")
                 elif record.op == records.CHUNK_INFO:
                     break
                 if record.stop > size:
@@ -172,7 +169,13 @@ class BagFile:
             self.problems.append(_cut_off(position, size, spans))
         else:
             self._tell_of_index(header, position, spans, chunks)
+        self._tell_of_missing(announced - sum(sum(span.counts.values()) for span in spans))
         return found, spans
+
+    def _tell_of_missing(self, messages: int) -> None:
+        """Say that messages are missing that the index of their chunks lists, if nothing tells why."""
+        if messages > 0 and not self.problems:
+            self.problems.append(f"{messages} messages that it announces cannot be found")
 
     def _tell_of_index(
         self, header: records.Record, position: int, spans: list[BagSpan], chunks: int
@@ -187,12 +190,20 @@ class BagFile:
     def _scanned(self, chunk: records.Record, position: int) -> bytes:
         """The whole records of a chunk; none, and an entry in ``problems``, where it is damaged."""
         try:
-            return records.whole_records(self._whole(chunk))
+            content = self._whole(chunk)
         except DamagedBagError as error:
             if chunk.stop > self._size:
                 raise
             self.problems.append(f"the chunk at byte {position} is damaged and left out: {error}")
             return b""
+        return self._undamaged(position, content)
+
+    def _undamaged(self, position: int, content: bytes) -> bytes:
+        """What comes in a chunk's content before damage, which is told in ``problems``."""
+        whole = records.whole_records(content)
+        if len(whole) < len(content):
+            self.problems.append(f"the chunk at byte {position} is damaged; what comes before in it is read")
+        return whole
 
     def _unclosed(self, chunk: records.Record, size: int) -> bytes:
         """The whole records behind the head of a chunk that was being written; empty where there is no message.

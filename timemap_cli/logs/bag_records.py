@@ -211,7 +211,7 @@ def _listed_messages(data: Bytes, offsets: Int64s, key: int) -> tuple[Int64s, In
 
     The headers must all be laid out like the first one: writers do so, but the format does not ask for it.
     """
-    if offsets.min() < 0 or offsets.max() + 4 > len(data):
+    if offsets.min() < 0 or offsets.max() + 4 > len(data) or len(np.unique(offsets)) < len(offsets):
         return None
     (header_length,) = _uint32.unpack(data[offsets[0] : offsets[0] + 4].tobytes())
     head = header_length + 8

@@ -34,8 +34,8 @@ class ScanCounts:
     """Every scan read, and why those were dropped that did not come out.
 
     Reasons: ``malformed`` (a stamp before 1970, or what decoding said), ``outside_time``, ``late`` (more than
-    10 s behind the newest), ``ahead`` (of all others of its recording), ``duplicate`` (topic and stamp of
-    another scan), ``no_pose``, and those of ``PoseLimits``.
+    10 s behind the newest), ``ahead`` (of all others of its recording), ``duplicate`` (topic, stamp and
+    ranges of another scan), ``same_stamp`` (other ranges), ``no_pose``, and those of ``PoseLimits``.
     """
 
     read: int = 0

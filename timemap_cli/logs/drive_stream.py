@@ -197,7 +197,9 @@ class DriveStream:
     def _placed(self, entries: Entries, limit_ns: int) -> Iterator[Sweeps | EndOfRecording]:
         """Yield scans in stamp order as blocks; in between, recordings that are over before the limit."""
         again = repeats(entries)
-        self._counts.drop("duplicate", int(np.count_nonzero(again)))
+        copies = self._window.are_copies(entries, np.flatnonzero(again))
+        self._counts.drop("duplicate", int(np.count_nonzero(copies)))
+        self._counts.drop("same_stamp", int(np.count_nonzero(~copies)))
         entries = entries[~again]
         first, last, known = self._look_up(entries)
         self._counts.drop("no_pose", len(known) - int(np.count_nonzero(known)))

@@ -17,6 +17,8 @@ from timemap_cli.model.state import State
 WINDOW_NS = 10_000_000_000
 # A sweep longer than this is a driver's mistake (seconds for milliseconds), not a scanner.
 MAX_SWEEP_NS = 2_000_000_000
+# So far apart one recorder logs a message that comes to it in two ways; damage shows one in the place of another.
+COPIED_NS = 1_000_000_000
 BEGINNING_NS = -(2**62)  # before all stamps
 
 Entries = NDArray[np.void]
@@ -160,6 +162,19 @@ class ScanWindow:
             for begin, end in pairwise(starts)
         ]
         return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
+
+    def are_copies(self, entries: Entries, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Whether these scans (rows,), which have the stamp of the one before each, are that scan recorded twice.
+
+        The ranges are the same then, and it was at once, or in another recording.
+        """
+        copies = np.zeros(len(rows), np.bool_)
+        for i, row in enumerate(rows.tolist()):
+            one, other = entries[row - 1 : row], entries[row : row + 1]
+            at_once = abs(int(one["log"][0]) - int(other["log"][0])) <= COPIED_NS
+            if one["kind"] == other["kind"] and (at_once or one["recording"] != other["recording"]):
+                copies[i] = np.array_equal(self.gather(one), self.gather(other), equal_nan=True)
+        return copies
 
     def kept(self) -> State:
         """What is coming and waiting, for `restore`."""
