@@ -6,6 +6,7 @@
 # make changes-bench  how well changes are told in a simulated building whose changes are known
 # make damage  what becomes of recordings that are damaged at random
 # make kill-bench  replays stopped at random moments, by kill -9 and otherwise: nothing earlier is lost
+# make mutations  which mistakes timemap check catches, and whether noise alone passes
 # make paper   the paper's experiments: docs/paper.md and its figures
 # make clean   remove what the above made, except .venv
 
@@ -17,7 +18,7 @@ SAMPLES := sample_logs/patrol_monday.mcap sample_logs/patrol_tuesday.bag sample_
 # The versions in constraints.txt hold for the tools that build the package, too.
 PIP_INSTALL := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
 
-.PHONY: setup demo test check bench changes-bench damage kill-bench paper clean
+.PHONY: setup demo test check bench changes-bench damage kill-bench mutations paper clean
 .DELETE_ON_ERROR:
 
 setup: $(VENV)/timemap.stamp
@@ -45,6 +46,9 @@ changes-bench: $(VENV)/timemap.stamp
 
 damage: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.damage
+
+mutations: $(VENV)/timemap.stamp
+	$(BIN)/python -m benchmarks.mutations
 
 kill-bench: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.stopped_replays

@@ -1,6 +1,6 @@
 import numpy as np
 
-from timemap_cli.checks.places import Ends, moved_places
+from timemap_cli.checks.places import Ends, MovedPlace, confirmed, moved_places
 
 
 def ends(*groups):
@@ -11,18 +11,18 @@ def ends(*groups):
     return Ends(x.astype(float), y.astype(float), node.astype(np.int64), distance.astype(float))
 
 
-THREE_SEE_IT = [(4, 2.1, 3.1, node, 0.15) for node in (5, 6, 7)]
+THREE_SEE_IT = [(6, 2.1, 3.1, node, 0.15) for node in (5, 6, 7)]
 
 
 def test_a_surface_that_three_nodes_see_off_is_a_place():
     (place,) = moved_places(ends(*THREE_SEE_IT, (5, 2.1, 3.1, 7, 0.25)), 0.08, nodes=9)
-    assert (round(place.x, 6), round(place.y, 6), place.ends) == (2.1, 3.1, 17)
+    assert (round(place.x, 6), round(place.y, 6), place.ends) == (2.1, 3.1, 23)
     assert place.nodes == (7, 5, 6)  # the one with most ends first
-    assert place.distance == 0.15  # of seventeen the ninth
+    assert place.distance == 0.15  # of 23 the twelfth
 
 
 def test_what_two_nodes_see_is_no_place_unless_there_are_no_more():
-    two = ends(*(group for group in THREE_SEE_IT if group[3] != 7), (4, 2.1, 3.1, 6, 0.15))
+    two = ends(*(group for group in THREE_SEE_IT if group[3] != 7), (6, 2.1, 3.1, 6, 0.15))
     assert moved_places(two, 0.08, nodes=9) == []
     assert len(moved_places(two, 0.08, nodes=2)) == 1
 
@@ -43,8 +43,27 @@ def test_a_thing_across_the_borders_of_cells_is_one_place():
 
 
 def test_places_apart_are_told_the_larger_first():
-    far = [(6, 8.1, 3.1, node, 0.15) for node in (1, 2, 3)]
-    assert [place.ends for place in moved_places(ends(*THREE_SEE_IT, *far), 0.08, nodes=9)] == [18, 12]
+    far = [(7, 8.1, 3.1, node, 0.15) for node in (1, 2, 3)]
+    assert [place.ends for place in moved_places(ends(*THREE_SEE_IT, *far), 0.08, nodes=9)] == [21, 18]
+
+
+def place_of(ends, x):
+    return MovedPlace(x, 3.1, ends, (1, 2, 3), 0.15)
+
+
+def test_a_few_ends_at_one_level_are_noise_and_at_several_levels_a_thing():
+    assert confirmed([[place_of(11, 2.1)], [], []]) == [[], [], []]
+    levels = [[place_of(11, 2.1)], [place_of(9, 2.3)], []]
+    assert confirmed(levels) == levels
+
+
+def test_many_ends_at_one_level_are_a_thing():
+    levels = [[], [], [place_of(16, 2.1)]]
+    assert confirmed(levels) == levels
+
+
+def test_places_of_two_levels_apart_do_not_confirm_each_other():
+    assert confirmed([[place_of(11, 2.1)], [place_of(9, 3.2)]]) == [[], []]
 
 
 def test_nothing_to_compare_is_no_place():

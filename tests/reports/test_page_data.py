@@ -1,8 +1,8 @@
 """What a page shows is what the result holds."""
 
 import base64
-import gzip
 import json
+import zlib
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def data(tmp_path):
 
 
 def unpacked(text, kind):
-    return np.frombuffer(gzip.decompress(base64.b64decode(text)), kind)
+    return np.frombuffer(zlib.decompress(base64.b64decode(text)), kind)
 
 
 def estimates(data, level):

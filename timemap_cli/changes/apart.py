@@ -9,6 +9,7 @@ import numpy as np
 from timemap_cli.changes.rings import Floats, Places, Rings
 from timemap_cli.changes.rules import Rules
 from timemap_cli.changes.runs import Run
+from timemap_cli.model.elementary import lengths
 
 
 def stands_apart(run: Run, lacking: Rings, places: Places, rules: Rules) -> bool:
@@ -24,7 +25,7 @@ def _distances(points: Floats, ends: Floats, joined_m: float) -> Floats:
     Neighbouring ends closer than `joined_m` are joined; an end alone is a surface of its own. Inf where there is none.
     """
     along = np.roll(ends, -1, axis=0) - ends
-    joined = np.hypot(along[:, 0], along[:, 1]) < joined_m  # false where an end is NaN
+    joined = lengths(along) < joined_m  # false where an end is NaN
     along = np.where(joined[:, None], along, 0.0)
     there = np.flatnonzero(~np.isnan(ends[:, 0]))
     if not len(there):
@@ -33,4 +34,4 @@ def _distances(points: Floats, ends: Floats, joined_m: float) -> Floats:
     offset = points[:, None] - ends
     share = (offset * along).sum(axis=2) / np.maximum((along * along).sum(axis=1), 1e-9)
     nearest = offset - np.clip(share, 0.0, 1.0)[..., None] * along
-    return np.asarray(np.hypot(nearest[..., 0], nearest[..., 1]).min(axis=1))
+    return np.asarray(lengths(nearest).min(axis=1))

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from math import hypot
 
 from timemap_cli.changes.rings import Floats
+from timemap_cli.model.elementary import distance
 
 
 class Kind(Enum):
@@ -64,7 +64,7 @@ class Change:
     def size_m(self) -> float:
         """Diagonal of the bounds [m]."""
         x_min, y_min, x_max, y_max = self.bounds
-        return hypot(x_max - x_min, y_max - y_min)
+        return distance(x_max - x_min, y_max - y_min)
 
     @property
     def shift_m(self) -> float:
@@ -73,7 +73,7 @@ class Change:
         A range that was clear, or became it, is a step without bound.
         """
         if self.moved_from is not None:
-            return hypot(self.x - self.moved_from[0], self.y - self.moved_from[1])
+            return distance(self.x - self.moved_from[0], self.y - self.moved_from[1])
         return max(abs(sector.range_to_m - sector.range_from_m) for sector in self.sectors)
 
 

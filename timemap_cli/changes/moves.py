@@ -9,6 +9,7 @@ from timemap_cli.changes.rings import Places, Rings
 from timemap_cli.changes.rules import Rules
 from timemap_cli.changes.runs import Run
 from timemap_cli.changes.things import Thing, distances
+from timemap_cli.model.elementary import lengths
 
 
 def pair_moves(
@@ -33,7 +34,7 @@ def pair_moves(
 
 def _is_near(gone: Thing, come: Thing, rules: Rules) -> bool:
     apart = gone.points.mean(axis=0) - come.points.mean(axis=0)
-    return bool(np.hypot(*apart) <= rules.move_max_m)
+    return bool(lengths(apart) <= rules.move_max_m)
 
 
 def _is_same(gone: Thing, come: Thing, old: Rings, new: Rings, places: Places, rules: Rules) -> bool:

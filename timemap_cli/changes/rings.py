@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.changes.rules import Rules
+from timemap_cli.model.elementary import cos_sin
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 
@@ -46,19 +48,22 @@ class Places:
 
     def points(self, row: int, bins: Ints, ranges: Floats) -> Floats:
         """Ends of ranges [m] at the centres of a row's angle bins, (n, 2) [m] map frame."""
-        bearings = (bins + 0.5) * self.bin_rad
-        toward = np.stack((np.cos(bearings), np.sin(bearings)), axis=1)
-        return np.asarray(self.centres[row] + ranges[:, None] * toward)
+        return np.asarray(self.centres[row] + ranges[:, None] * _directions(self.angle_bins)[bins])
 
     def ends(self, ranges: Floats) -> Floats:
         """Ends of ranges (..., angle_bins) [m] as (..., angle_bins, 2) [m] from their node; NaN where there is none."""
-        bearings = (np.arange(self.angle_bins) + 0.5) * self.bin_rad
         finite = np.where(np.isfinite(ranges), ranges, np.nan)
-        return np.stack((finite * np.cos(bearings), finite * np.sin(bearings)), axis=-1)
+        return np.asarray(finite[..., None] * _directions(self.angle_bins))
 
     def edge_bins(self, rules: Rules) -> int:
         """How many bins to either side an edge may shift; at least one."""
         return max(1, int(np.radians(rules.edge_deg) / self.bin_rad + 1e-9))
+
+
+@lru_cache(maxsize=8)
+def _directions(angle_bins: int) -> Floats:
+    """Unit vectors (angle_bins, 2) to the centre of each angle bin."""
+    return np.stack(cos_sin(np.arange(0.5, angle_bins) * (2 * np.pi / angle_bins)), axis=1)
 
 
 def comparable(old: Mapping[int, Estimate], new: Mapping[int, Estimate], only_renewed: bool) -> list[int]:

@@ -6,6 +6,7 @@ import numpy.typing as npt
 from timemap_cli.changes.bins import seen_past, step
 from timemap_cli.changes.rings import Bools, Floats, Ints, Places, Rings
 from timemap_cli.changes.rules import Rules
+from timemap_cli.model.elementary import bearings, lengths
 
 STANDS, UNTOLD, GONE = 1, 0, -1
 Words = npt.NDArray[np.int8]
@@ -36,11 +37,11 @@ def words(points: Floats, side: Rings, places: Places, rules: Rules) -> Words:
 def towards(points: Floats, places: Places) -> tuple[Ints, Ints, Floats]:
     """Rows (k, 1) of the nodes within reach of some point, and each point's angle bin and range from there (k, n)."""
     offset = points[None, :, :] - places.centres[:, None, :]
-    near = np.hypot(offset[..., 0], offset[..., 1]).min(axis=1) <= places.radius
+    near = lengths(offset).min(axis=1) <= places.radius
     rows, offset = np.flatnonzero(near)[:, None], offset[near]
-    bearings = np.arctan2(offset[..., 1], offset[..., 0])
-    bins = np.floor(bearings / places.bin_rad).astype(np.int64) % places.angle_bins
-    return rows, bins, np.hypot(offset[..., 0], offset[..., 1])
+    turned = bearings(offset[..., 0], offset[..., 1])
+    bins = np.floor(turned / places.bin_rad).astype(np.int64) % places.angle_bins
+    return rows, bins, lengths(offset)
 
 
 def look(

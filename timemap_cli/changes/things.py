@@ -7,6 +7,7 @@ import numpy as np
 
 from timemap_cli.changes.rings import Floats
 from timemap_cli.changes.runs import Run
+from timemap_cli.model.elementary import lengths
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,7 @@ def link(runs: Sequence[Run], reach_m: float) -> list[Thing]:
 
 def distances(a: Floats, b: Floats) -> Floats:
     """Distance of every point of a (n, 2) from every point of b (m, 2), (n, m) [m]."""
-    return np.asarray(np.hypot(a[:, None, 0] - b[None, :, 0], a[:, None, 1] - b[None, :, 1]))
+    return lengths(a[:, None] - b[None])
 
 
 def gap(a: Floats, b: Floats) -> float:

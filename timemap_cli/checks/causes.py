@@ -20,8 +20,13 @@ def likely_causes(expected: Snapshot, found: Snapshot, failures: Sequence[Measur
         yield f"a missing return means '{found.no_return}' now and meant '{expected.no_return}': {_NO_RETURN}"
     if beams := failed.get("beams.kinds"):
         yield f"{beams.text}: the driver, or the code that it writes for a missing return"
+    if "scans.read" in failed:
+        change = found.scans.read / max(1, expected.scans.read) - 1
+        which = "fewer" if change < 0 else "more"
+        yield f"{100 * abs(change):.1f} % {which} scans: a part of a recording, or single scans of it"
     yield from _geometry(failed)
-    yield from _scans(expected, found, failed)
+    if "scans.used" in failed:
+        yield f"scans are dropped for other reasons: {_dropped(expected, found)}"
     yield from different_inputs(expected, found)
 
 
@@ -63,16 +68,11 @@ def _geometry(failed: dict[str, Measure]) -> Iterator[str]:
         yield f"something stands elsewhere around {spot.x:.2f}, {spot.y:.2f}: {spot.text}"
 
 
-def _scans(expected: Snapshot, found: Snapshot, failed: dict[str, Measure]) -> Iterator[str]:
-    if "scans.read" in failed:
-        change = found.scans.read / max(1, expected.scans.read) - 1
-        which = "fewer" if change < 0 else "more"
-        yield f"{100 * abs(change):.1f} % {which} scans: a part of a recording, or single scans of it"
-    if "scans.used" in failed:
-        reasons = {**expected.scans.dropped, **found.scans.dropped}
-        told = [
-            f"{reason} {found.scans.dropped.get(reason, 0)} instead of {expected.scans.dropped.get(reason, 0)}"
-            for reason in sorted(reasons)
-            if found.scans.dropped.get(reason, 0) != expected.scans.dropped.get(reason, 0)
-        ]
-        yield f"scans are dropped for other reasons: {', '.join(told)}"
+def _dropped(expected: Snapshot, found: Snapshot) -> str:
+    reasons = {**expected.scans.dropped, **found.scans.dropped}
+    told = [
+        f"{reason} {found.scans.dropped.get(reason, 0)} instead of {expected.scans.dropped.get(reason, 0)}"
+        for reason in sorted(reasons)
+        if found.scans.dropped.get(reason, 0) != expected.scans.dropped.get(reason, 0)
+    ]
+    return ", ".join(told)

@@ -6,10 +6,11 @@ import numpy as np
 
 from timemap_cli.checks.causes import different_inputs, likely_causes
 from timemap_cli.checks.event_measures import event_measures
-from timemap_cli.checks.level_measures import level_measures
+from timemap_cli.checks.level_measures import both_ends, level_measures
 from timemap_cli.checks.matching import Matched, matched
 from timemap_cli.checks.motion_measures import motion_measures
 from timemap_cli.checks.pairs import Pair
+from timemap_cli.checks.places import confirmed, moved_places
 from timemap_cli.checks.snapshot import Snapshot
 from timemap_cli.checks.surfaces import offsets
 from timemap_cli.checks.verdict import Measure, Verdict
@@ -57,9 +58,13 @@ def _ring_measures(
     pairs = [_pair(expected, found, nodes, level) for level in levels]
     come = [offsets(pair.found, pair.expected, pair.apart) for pair in pairs]
     gone = [offsets(pair.expected, pair.found, -pair.apart) for pair in pairs]
-    yield from motion_measures(pairs, come, allowed)
-    for level, pair, ours, theirs in zip(levels, pairs, come, gone, strict=True):
-        yield from level_measures(level, pair, ours, theirs, allowed)
+    yield from motion_measures(pairs[-1], come[-1], allowed)  # the slowest level averages most
+    sides = list(zip(pairs, come, gone, strict=True))
+    places = confirmed(
+        [moved_places(both_ends(*one), allowed["ranges.step"], len(nodes.pairs)) for one in sides]
+    )
+    for level, (pair, ours, theirs), moved in zip(levels, sides, places, strict=True):
+        yield from level_measures(level, pair, ours, theirs, moved, allowed)
 
 
 def _pair(expected: Snapshot, found: Snapshot, nodes: Matched, level: str) -> Pair:

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.checks.pairs import SHOWN, Pair
-from timemap_cli.checks.places import Ends, MovedPlace, moved_places
+from timemap_cli.checks.places import Ends, MovedPlace
 from timemap_cli.checks.surfaces import Offsets, ends
 from timemap_cli.checks.tolerances import TOLERANCES
 from timemap_cli.checks.verdict import Measure, Spot
@@ -17,23 +17,26 @@ Bools = npt.NDArray[np.bool_]
 
 
 def level_measures(
-    level: str, pair: Pair, come: Offsets, gone: Offsets, allowed: Mapping[str, float]
+    level: str,
+    pair: Pair,
+    come: Offsets,
+    gone: Offsets,
+    places: Sequence[MovedPlace],
+    allowed: Mapping[str, float],
 ) -> list[Measure]:
     """All figures of a level, with the places where they come from.
 
     `come` are the offsets of the result's ends from the baseline's surfaces, `gone` those the other way round.
     """
-    step_m = allowed["ranges.step"]
-    places = moved_places(_ends(pair, come, gone), step_m, len(pair.numbers))
     told = _Told(level, pair, allowed)
     return [
-        told.moved(come, gone, step_m),
+        told.moved(come, gone, allowed["ranges.step"]),
         told.places(places),
         *told.status(),
     ]
 
 
-def _ends(pair: Pair, come: Offsets, gone: Offsets) -> Ends:
+def both_ends(pair: Pair, come: Offsets, gone: Offsets) -> Ends:
     """The ends of both sides in the map frame, where both know the angle bin."""
     sides = []
     for ranges, off, centres in (

@@ -1,5 +1,6 @@
 """Places of the map where several nodes agree that a surface has moved."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,11 @@ Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 
 _CELL_M = 0.5  # about the size of a thing
-_LEAST_ENDS = 8
+_LEAST_ENDS = 8  # in a cell
+_LEAST_IN_ALL = (
+    16  # at all levels: noise makes a crowd of 8 at one now and then, the side of a sofa 30 at three
+)
+_SAME_M = 1.0  # places of two levels
 _LEAST_NODES = 3  # people who stood about are remembered by one or two
 _LEAST_SHARE = 0.4  # of the ends in the cell: along a wall single ends move at its edges
 
@@ -52,6 +57,19 @@ def moved_places(ends: Ends, step_m: float, nodes: int) -> list[MovedPlace]:
     least = min(_LEAST_NODES, nodes)
     found = [place for place in places if len(place.nodes) >= least]
     return sorted(found, key=lambda place: (-place.ends, place.x, place.y))
+
+
+def confirmed(levels: Sequence[Sequence[MovedPlace]]) -> list[list[MovedPlace]]:
+    """Of each level's places those that all levels together show by enough ends."""
+    return [[place for place in level if _ends_in_all(place, levels) >= _LEAST_IN_ALL] for level in levels]
+
+
+def _ends_in_all(place: MovedPlace, levels: Sequence[Sequence[MovedPlace]]) -> int:
+    near = (
+        [one.ends for one in level if np.hypot(one.x - place.x, one.y - place.y) <= _SAME_M]
+        for level in levels
+    )
+    return sum(max(ends, default=0) for ends in near)
 
 
 def _crowded(ends: Ends, moved: Bools) -> Bools:

@@ -1,6 +1,5 @@
 """How far the ends of one ring lie from the surfaces of another."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,16 +26,6 @@ class Offsets:
     def distance(self) -> Floats:
         """(rows, angle_bins) [m]; +inf where the other ring has no surface near this bearing."""
         return np.asarray(np.hypot(self.x, self.y))
-
-    @classmethod
-    def joined(cls, parts: "Sequence[Offsets]") -> "Offsets":
-        """Those of several rings of the same rows, side by side."""
-        return cls(
-            np.concatenate([part.x for part in parts], axis=1),
-            np.concatenate([part.y for part in parts], axis=1),
-            np.concatenate([part.normal_x for part in parts], axis=1),
-            np.concatenate([part.normal_y for part in parts], axis=1),
-        )
 
 
 def ends(ranges: Floats) -> tuple[Floats, Floats]:

@@ -23,14 +23,14 @@ TOLERANCES: Mapping[str, Tolerance] = {
     "scans.read": Tolerance(0.005, "", "more or fewer scans read"),
     "scans.used": Tolerance(0.01, "", "more or fewer of the scans read are used"),
     "beams.kinds": Tolerance(
-        0.01, "", "share of the hits, missing returns and useless beams, whichever differs most"
+        0.33, "", "change of the share of hits, missing returns or useless beams, in proportion to that share"
     ),
     "nodes.place": Tolerance(0.25, "m", "a node this far away is the same node"),
     "nodes.missing": Tolerance(0.05, "", "nodes of the baseline that are not there"),
     "nodes.new": Tolerance(0.05, "", "nodes that the baseline does not have"),
     "map.shift": Tolerance(0.01, "m", "shift that all nodes have in common"),
     "map.turn": Tolerance(0.25, "deg", "turn that all nodes have in common"),
-    "nodes.shift": Tolerance(0.012, "m", "shifts of the single nodes, root mean square"),
+    "nodes.shift": Tolerance(0.015, "m", "shifts of the single nodes, root mean square"),
     "nodes.turn": Tolerance(0.4, "deg", "turns of the single nodes, root mean square"),
     "ranges.step": Tolerance(0.08, "m", "an end this far from the baseline's surfaces has moved"),
     "ranges.moved": Tolerance(0.03, "", "angle bins that moved"),

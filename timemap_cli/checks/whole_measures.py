@@ -8,6 +8,7 @@ from timemap_cli.checks.tolerances import TOLERANCES
 from timemap_cli.checks.verdict import Measure, Spot
 
 _SHOWN = 5
+_RARE = 0.005  # share of a kind of beam that may as well be twice or half of it
 _KINDS = {"hit": "hits", "no_return": "missing returns", "invalid": "invalid", "too_close": "too close"}
 
 
@@ -45,10 +46,10 @@ def whole_measures(
 
 
 def _beams(expected: Snapshot, found: Snapshot, allowed: Mapping[str, float]) -> Iterator[Measure]:
-    """The kind of beam whose share differs most, of the scan topics that both sides tell about."""
+    """The kind of beam whose share differs most in proportion, of the scan topics that both sides tell about."""
     told = [
         (
-            abs(share - now.get(kind, 0.0)),
+            abs(share - now.get(kind, 0.0)) / (max(share, now.get(kind, 0.0)) + _RARE),
             f"{100 * now.get(kind, 0.0):.2f} % of the beams of {topic} are {_KINDS[kind]}, "
             f"{100 * share:.2f} % expected",
         )

@@ -17,7 +17,7 @@ Edge = tuple[str, str]  # parent, child
 
 # Two recorders of one robot may have missed different messages, and the robot moves in between.
 OTHER_PLACE_M = 0.5
-OTHER_TURN_RAD = math.radians(30)
+TRACE_OF_OTHER_TURN = 1 + math.sqrt(3)  # 1 + 2 cos of 30 degrees
 OTHER_SHARE = 0.1  # of the stamps that both cover
 
 
@@ -80,7 +80,7 @@ def _differ(one: TransformBatch, other: TransformBatch) -> bool:
     both = known != NO_PARENT
     if not both.any():
         return False
-    far = np.linalg.norm(there[both, :, 3] - here[both, :, 3], axis=1) > OTHER_PLACE_M
-    # The trace of a turn by an angle is 1 + 2 cos.
+    apart = there[both, :, 3] - here[both, :, 3]
+    far = (apart * apart).sum(axis=1) > OTHER_PLACE_M * OTHER_PLACE_M
     trace = (there[both, :, :3] * here[both, :, :3]).sum(axis=(1, 2))
-    return bool((far | (trace < 1 + 2 * math.cos(OTHER_TURN_RAD))).mean() > OTHER_SHARE)
+    return bool((far | (trace < TRACE_OF_OTHER_TURN)).mean() > OTHER_SHARE)

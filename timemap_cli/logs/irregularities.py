@@ -3,6 +3,7 @@
 import numpy as np
 
 from timemap_cli.logs.batches import Float64s, Int64s
+from timemap_cli.model.elementary import bearings, lengths
 
 FAR_S = 10.0  # between stamps and log times: more than any buffer
 CLOCK_JUMP_S = 1.0  # of the distance between stamps and log times
@@ -30,8 +31,8 @@ def pose_problems(topic: str, stamps_ns: Int64s, map_from_laser: Float64s) -> li
     order = np.argsort(stamps_ns, kind="stable")
     poses, seconds = map_from_laser[order], (stamps_ns[order] - stamps_ns.min(initial=2**62)) / 1e9
     passed = np.maximum(np.diff(seconds), 1e-9)
-    steps = np.linalg.norm(np.diff(poses[:, :2, 3], axis=0), axis=1)
-    along = np.unwrap(np.arctan2(poses[:, 1, 0], poses[:, 0, 0]))
+    steps = lengths(np.diff(poses[:, :2, 3], axis=0))
+    along = np.unwrap(bearings(poses[:, 0, 0], poses[:, 1, 0]))
     turns = np.abs(np.diff(along))
     jumps = (steps > POSE_STEP_M) & (steps > POSE_SPEED * passed)
     jumps |= (turns > POSE_TURN_RAD) & (turns > POSE_RATE * passed)

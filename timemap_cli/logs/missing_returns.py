@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from timemap_cli.model.elementary import cos_sin
 from timemap_cli.model.sweeps import Sweeps
 
 CELL = 0.05  # [m] finer than a wall is thick, coarser than the noise of a scanner
@@ -121,10 +122,14 @@ def _passed_cells(block: Sweeps, radius: float, every: int) -> Int64s:
 
 
 def _rays(block: Sweeps) -> tuple[Float64s, Float64s]:
-    """Where the beams begin (n, 2) [m] and where they go (n, beams, 2), seen from above."""
+    """Where the beams begin (n, 2) [m] and where they go (n, beams, 2), seen from above.
+
+    Products one by one: how a matrix product rounds is up to the machine.
+    """
     map_from_laser = block.map_from_laser_first
-    along = np.stack([np.cos(block.bearings), np.sin(block.bearings)])  # (2, beams)
-    return map_from_laser[:, :2, 3], np.swapaxes(map_from_laser[:, :2, :2] @ along, 1, 2)
+    cos, sin = cos_sin(block.bearings)
+    along_x, along_y = (map_from_laser[:, None, :2, axis] for axis in (0, 1))
+    return map_from_laser[:, :2, 3], along_x * cos[:, None] + along_y * sin[:, None]
 
 
 def _cells(points: Float64s) -> Int64s:

@@ -2,7 +2,7 @@
 
 A transform ``a_from_b`` (..., 3, 4) holds rotation and translation ``[R | t]``: it takes a point's
 coordinates in b to its coordinates in a. Everything is spelled out in plain arithmetic, element by element,
-so that a transform's value does not depend on how many others it is computed with.
+so that a transform's value does not depend on how many others it is computed with, nor on the machine.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from timemap_cli.logs.batches import Float64s
+from timemap_cli.model.elementary import bearings, cos_sin
 
 IDENTITY: Float64s = np.eye(3, 4)
 IDENTITY.flags.writeable = False
@@ -78,12 +79,12 @@ def _slerp(first: Float64s, second: Float64s, share: Float64s) -> Float64s:
     # q and -q are the same rotation; the nearer of the two is the shorter way.
     nearer = second * np.where(_dot(first, second) < 0, -1.0, 1.0)
     # Unlike arccos of the dot product this is exact for small angles, which is what neighbouring poses have.
-    angle = 2 * np.arctan2(_length(nearer - first), _length(nearer + first))
-    sine = np.sin(angle)
+    angle = 2 * bearings(_length(nearer + first), _length(nearer - first))
+    _, (sine, sine_first, sine_second) = cos_sin(np.stack((angle, (1 - share) * angle, share * angle)))
     straight = sine < 1e-9
     sine = np.where(straight, 1.0, sine)
-    weight_first = np.where(straight, 1 - share, np.sin((1 - share) * angle) / sine)
-    weight_second = np.where(straight, share, np.sin(share * angle) / sine)
+    weight_first = np.where(straight, 1 - share, sine_first / sine)
+    weight_second = np.where(straight, share, sine_second / sine)
     return weight_first * first + weight_second * nearer
 
 

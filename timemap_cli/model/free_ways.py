@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.angles import quarter_turns
+from timemap_cli.model.elementary import distance
 from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
 
@@ -24,7 +25,7 @@ Bools = npt.NDArray[np.bool_]
 ROBOT_RADIUS = 0.25  # [m] so far round a place where the laser was there is no wall
 KEPT_VIEWS = 16  # so many earlier scans are looked at ...
 KEPT_TRAVEL = 0.2  # [m] ... each so far from the one before it ...
-KEPT_TURN = math.radians(30)  # ... or turned by so much
+COS_KEPT_TURN = math.sqrt(0.75)  # ... or turned by 30 degrees
 LONGEST_MOVE = 2.0  # [m] between two scans; more is a jump of the pose, or a gap in the recording
 LONGEST_PAUSE_NS = 1_000_000_000  # between scans of two scanners, in which the robot stays where it is
 
@@ -199,11 +200,11 @@ def _placed(sweeps: Sweeps) -> tuple[Floats, Floats]:
 
 
 def _apart(x: float, y: float, row: list[float]) -> float:
-    return math.sqrt((row[0] - x) ** 2 + (row[1] - y) ** 2)
+    return distance(row[0] - x, row[1] - y)
 
 
 def _is_another_view(last: tuple[float, ...], row: list[float]) -> bool:
-    turned = last[2] * row[2] + last[3] * row[3] < math.cos(KEPT_TURN)
+    turned = last[2] * row[2] + last[3] * row[3] < COS_KEPT_TURN
     return turned or _apart(last[0], last[1], row) >= KEPT_TRAVEL
 
 

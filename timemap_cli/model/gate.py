@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.elementary import distance
+
 
 @dataclass(frozen=True, slots=True)
 class Gate:
@@ -66,6 +68,6 @@ def _far_enough(gate: Gate, before: Passage, x: float, y: float, yaw: float, sta
         return False
     if not (gate.min_travel or gate.min_turn):
         return True
-    travelled = math.hypot(x - before.x, y - before.y)
+    travelled = distance(x - before.x, y - before.y)
     turned = abs(math.remainder(yaw - before.yaw, math.tau))
     return 0 < gate.min_travel <= travelled or 0 < gate.min_turn <= turned

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.elementary import cos_sin
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.polygons import Raster, count_cover
@@ -79,8 +80,8 @@ def _centres(nodes: Sequence[Node], estimates: Mapping[int, Estimate]) -> _Float
 @lru_cache(maxsize=8)
 def _directions(angle_bins: int) -> tuple[_Floats, _Floats]:
     """Unit vectors (angle_bins, 2) to the centre of each angle bin, and to its border with the next."""
-    half = math.pi / angle_bins
-    turned = np.array([(math.cos(half * i), math.sin(half * i)) for i in range(1, 2 * angle_bins + 1)])
+    halves = np.arange(1.0, 2 * angle_bins + 1)
+    turned = np.stack(cos_sin(halves * (math.pi / angle_bins)), axis=1)
     return turned[::2], turned[1::2]
 
 

@@ -3,6 +3,10 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from timemap_cli.model.elementary import logarithms
+
 LONGEST_STEP = 10.0  # [s] of observed time between two scans: a week's absence does not wipe the memory
 
 
@@ -29,4 +33,4 @@ class Level:
         forgotten = math.log(2) / self.half_life * step
         if self.window == 1:
             return -math.expm1(-forgotten)
-        return forgotten / -math.log1p(-1 / self.window)
+        return forgotten / -float(logarithms(np.array(1 - 1 / self.window)))

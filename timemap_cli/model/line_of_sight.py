@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.angles import quarter_turns
+from timemap_cli.model.elementary import cos_sin
 from timemap_cli.model.outline import Outlines
 
 Floats = npt.NDArray[np.float32]
@@ -108,8 +109,5 @@ def _whole_numbers(chosen: Ints, first: Floats, last: Floats, rays: int) -> tupl
 
 @cache
 def _ray_directions(rays: int) -> tuple[Floats, Floats]:
-    angles = [2 * math.pi * k / rays for k in range(rays)]
-    return (
-        np.array([math.cos(a) for a in angles], np.float32),
-        np.array([math.sin(a) for a in angles], np.float32),
-    )
+    cos, sin = cos_sin(np.arange(rays) * (2 * math.pi) / rays)
+    return cos.astype(np.float32), sin.astype(np.float32)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.elementary import bearings
 from timemap_cli.model.free_ways import FreeWays, Outlook
 from timemap_cli.model.gate import Gate, Passage, Passages, passing
 from timemap_cli.model.nodes import Node
@@ -181,4 +182,4 @@ class Observer:
 def _places(sweeps: Sweeps) -> Floats:
     """x, y [m] and yaw [rad] (n, 3) of the laser at its first beam, in the map frame."""
     pose = sweeps.map_from_laser_first
-    return np.column_stack((pose[:, 0, 3], pose[:, 1, 3], np.arctan2(pose[:, 1, 0], pose[:, 0, 0])))
+    return np.column_stack((pose[:, 0, 3], pose[:, 1, 3], bearings(pose[:, 0, 0], pose[:, 1, 0])))

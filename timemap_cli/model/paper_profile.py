@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from timemap_cli.model.chains import best_states
 from timemap_cli.model.closed_path import IMPOSSIBLE, SCALE
+from timemap_cli.model.elementary import logarithms
 from timemap_cli.model.estimator import Estimated, assembled
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States, borders_at, how_many_known, known_ranges
@@ -87,5 +88,5 @@ def _first_rows(states: States, angle_bins: int) -> npt.NDArray[np.int64]:
 
 
 def _log(probability: Floats, *, strict: bool) -> npt.NDArray[np.int64]:
-    score = np.rint(np.log(np.maximum(probability, MISSING_EDGE)) * SCALE).astype(np.int64)
+    score = np.rint(logarithms(np.maximum(probability, MISSING_EDGE)) * SCALE).astype(np.int64)
     return np.where(probability > 0, score, IMPOSSIBLE) if strict else score

@@ -43,7 +43,7 @@ class Placement:
         finite = np.asarray(np.isfinite(places).all(axis=1))
         start = 0
         while not self.all_given and len(self.nodes) < MOST_NODES:
-            far = np.flatnonzero(~(squared[start:] <= self._spacing**2) & finite[start:])
+            far = np.flatnonzero(~(squared[start:] <= self._spacing * self._spacing) & finite[start:])
             if not len(far):
                 break
             start += int(far[0])
@@ -52,7 +52,7 @@ class Placement:
             nearer = start + np.flatnonzero(~(squared[start:] <= new))
             chosen[nearer], squared[nearer] = len(self.nodes) - 1, new[nearer - start]
             known[start:] = len(self.nodes)
-        return np.where(squared <= self._spacing**2, chosen, NO_NODE), known
+        return np.where(squared <= self._spacing * self._spacing, chosen, NO_NODE), known
 
     def farther(self, places: Floats, known: Ints, choice: int) -> tuple[npt.NDArray[np.bool_], Ints]:
         """Whether a place (n, 2) has so many nearer nodes and one more within reach (n,), and the number of that (n,).
@@ -67,7 +67,7 @@ class Placement:
             squared = _squared_distances(places[part], centres)
             squared[np.arange(len(centres)) >= known[part, None]] = np.inf
             node[part] = np.argsort(squared, axis=1, kind="stable")[:, choice]
-            near[part] = squared[np.arange(len(squared)), node[part]] <= self._spacing**2
+            near[part] = squared[np.arange(len(squared)), node[part]] <= self._spacing * self._spacing
         return near, node
 
     def may_insert(self, number: int) -> bool:

@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.elementary import cos_sin
 from timemap_cli.model.sweeps import Sweeps
 
 Floats = npt.NDArray[np.float32]
@@ -100,7 +101,5 @@ def _fan(float64_bearings: bytes) -> _Fan:
         pieces = max(1, math.ceil(gap / _ARC_STEP))
         angles += [stop + sign * gap * i / pieces for i in range(pieces + 1)]
         progress += [1 - i / pieces for i in range(pieces + 1)]
-    # cos and sin one by one: NumPy's own differ between processors in the last bit
-    cos = np.array([math.cos(angle) for angle in angles], np.float32)
-    sin = np.array([math.sin(angle) for angle in angles], np.float32)
+    cos, sin = (each.astype(np.float32) for each in cos_sin(np.array(angles)))
     return _Fan(cos, sin, np.array(progress, np.float32), beams, spacing, sign > 0)

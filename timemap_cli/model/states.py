@@ -3,13 +3,13 @@
 Fixed range bins split a surface that stands on their border in two and halve its weight; see docs/method.md.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.model.elementary import logarithms
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.virtual_scan import CLEAR, UNSEEN, Ranges
 
@@ -198,5 +198,7 @@ def _densest_windows(place: Stretched, groups: Ints, size: int) -> tuple[Ints, I
 def _stretched() -> Stretched:
     """Place of each range [mm] on a scale [_UNIT] on which surfaces of any range are equally wide."""
     bend = round(STRETCH_FROM * 1000)
-    stretch = [mm / 1000 if mm <= bend else STRETCH_FROM * (1 + math.log(mm / bend)) for mm in range(CLEAR)]
-    return np.array([round(metres / _UNIT) for metres in stretch] + [_CLEAR_PLACE, _UNSEEN_PLACE], np.int32)
+    mm = np.arange(CLEAR, dtype=np.float64)
+    beyond = STRETCH_FROM * (1 + logarithms(np.maximum(mm, bend) / bend))
+    metres = np.where(mm <= bend, mm / 1000, beyond)
+    return np.append(np.rint(metres / _UNIT), (_CLEAR_PLACE, _UNSEEN_PLACE)).astype(np.int32)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.closed_path import IMPOSSIBLE, SCALE
+from timemap_cli.model.elementary import logarithms
 from timemap_cli.model.memory import Remembered
 from timemap_cli.model.states import States
 from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
@@ -53,7 +54,7 @@ def votes(memory: Remembered, states: States, share: Shares) -> Ints:
     later it is a random one that stays for a while. The nearest state would win at one scan and lose at the next.
     """
     against = share.known[states.rows, None] - share.states
-    scores = _whole(np.log(np.maximum(0.5 / memory.window, 1 - against)))
+    scores = _whole(logarithms(np.maximum(0.5 / memory.window, 1 - against)))
     scores[~states.exists] = IMPOSSIBLE
     first = memory.samples.reshape(-1, memory.samples.shape[2])[states.rows, :1]
     rows = np.flatnonzero(first[:, 0] < UNSEEN)

@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot
 from typing import Any
+
+from timemap_cli.model.elementary import distance
 
 Event = Mapping[str, Any]  # as in the document of the schema timemap.changes/1
 
@@ -63,7 +64,7 @@ def selected(events: Sequence[Event], wanted: EventSelection, order: str) -> lis
 def size_m(event: Event) -> float:
     """Diagonal of an event's bounds [m]."""
     x_min, y_min, x_max, y_max = event["bounds"]
-    return hypot(x_max - x_min, y_max - y_min)
+    return distance(x_max - x_min, y_max - y_min)
 
 
 def _meet(one: Sequence[float], other: Sequence[float]) -> bool:

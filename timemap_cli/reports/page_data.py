@@ -1,7 +1,7 @@
 """What a page of a result shows, as values that JSON knows."""
 
 import base64
-import gzip
+import zlib
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ _UNKNOWN, _CLEAR = 65535, 65534
 def page_data(reader: ResultReader) -> dict[str, Any]:
     """Everything a page shows of a result: estimates over time, events, how the memory was filled, provenance.
 
-    Ranges are in whole centimetres, as gzipped arrays in base64: uint16 little endian, 65534 clear, 65535 unknown.
+    Ranges are in whole centimetres, as zlib streams in base64: uint16 little endian, 65534 clear, 65535 unknown.
     Where there are more times than MOST_STEPS, each node's newest estimates at so many of them are kept.
     """
     history = {level: list(reader.history(level)) for level in reader.levels}
@@ -74,10 +74,7 @@ def packed(
     whole[finite] = np.rint(ranges[finite] * _PER_METRE)
     whole[np.isposinf(ranges)] = _CLEAR
     arrays = {"step": steps.astype("<u2"), "node": nodes.astype("<u4"), "ranges": whole}
-    return {
-        name: base64.b64encode(gzip.compress(array.tobytes(), mtime=0)).decode()
-        for name, array in arrays.items()
-    }
+    return {name: base64.b64encode(zlib.compress(array.tobytes())).decode() for name, array in arrays.items()}
 
 
 def _coverage(reader: ResultReader) -> dict[str, list[int]]:

@@ -1,6 +1,5 @@
 """Reads a result back: nodes, settings, and the estimates of one level at one time."""
 
-import math
 import re
 import struct
 from collections.abc import Iterator
@@ -11,6 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from timemap_cli.errors import TimemapError
+from timemap_cli.model.elementary import distance
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 from timemap_cli.results import channels
@@ -181,7 +181,7 @@ class ResultReader:
         nodes = unpack_nodes(message) if message else ()
         if len(nodes) != int(self.metadata["nodes"]):
             raise ValueError("nodes are missing")
-        if not all(math.hypot(node.x, node.y) <= _FARTHEST_M for node in nodes):
+        if not all(distance(node.x, node.y) <= _FARTHEST_M for node in nodes):
             raise ValueError("a node that is not on earth")
         return nodes
 
