@@ -46,9 +46,19 @@ def run(checks: Sequence[Check], jobs: int) -> list[CheckedCase]:
     return _mapped(checked, checks, jobs)
 
 
-def update_all(checks: Sequence[Check], jobs: int) -> list[Updated]:
-    """Write the baseline of every check anew; the suite's tolerances stay in the suite."""
-    return _mapped(update, [replace(one, tolerances={}) for one in checks], jobs)
+def update_all(checks: Sequence[Check], overrides: Mapping[str, float], jobs: int) -> list[Updated]:
+    """Write the baseline of every check anew; `overrides` are kept in each, the suite's tolerances stay in the suite.
+
+    UsageError, and nothing is written, where two checks have one baseline: the last would win.
+    """
+    places = [one.baseline.resolve() for one in checks]
+    for one, place in zip(checks, places, strict=True):
+        if places.count(place) > 1:
+            raise UsageError(
+                f"{one.baseline} is the baseline of more than one check",
+                hint="--update-baseline on one of them alone",
+            )
+    return _mapped(update, [replace(one, tolerances=overrides) for one in checks], jobs)
 
 
 def _mapped(work: Callable[[Check], T], checks: Sequence[Check], jobs: int) -> list[T]:

@@ -117,7 +117,20 @@ def test_missing_scans_fail_with_their_share():
 def test_scans_dropped_for_another_reason_fail_with_the_reason():
     one = verdict(snapshot(scans=Scans(1000, 900, {"no_pose": 10, "lost": 90})))
     assert failed(one) == [("scans.used", None)]
-    assert one.causes == ("scans are dropped for other reasons: lost 90 instead of 0",)
+    assert one.causes == ("another share of the scans is dropped: lost 90 instead of 0",)
+
+
+def test_as_many_dropped_scans_of_fewer_are_told_with_both_counts():
+    one = verdict(snapshot(scans=Scans(200, 190, {"no_pose": 10})))
+    assert ("scans.used", None) in failed(one)
+    assert one.causes[-1] == "another share of the scans is dropped: 10 of 200 instead of 10 of 1000"
+
+
+def test_a_share_that_is_off_by_its_tolerance_passes():
+    one = verdict(
+        snapshot(), snapshot(scans=Scans(1000, 980, {"no_pose": 20}))
+    )  # 0.010000000000000009 in binary
+    assert failed(one) == []
 
 
 def test_missing_returns_that_count_as_hits_fail_though_the_map_is_the_same():

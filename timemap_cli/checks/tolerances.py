@@ -52,6 +52,11 @@ def defaults() -> dict[str, float]:
     return {name: tolerance.default for name, tolerance in TOLERANCES.items()}
 
 
+def within(value: float, allowed: float) -> bool:
+    """Whether a figure is within its tolerance; to nine digits, since 0.99 - 0.98 is more than 0.01 in binary."""
+    return value <= allowed + 1e-9 * max(1.0, allowed)
+
+
 def checked(values: Mapping[str, object], place: str) -> dict[str, float]:
     """Tolerances as a file has them; UsageError for an unknown name, with the nearest one, or no number >= 0."""
     found: dict[str, float] = {}

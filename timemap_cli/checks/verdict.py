@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from timemap_cli.checks.tolerances import within
 from timemap_cli.errors import ExitCode, TimemapError
 
 
@@ -39,7 +40,7 @@ class Measure:
     @property
     def passed(self) -> bool:
         """Whether it is within its tolerance."""
-        return self.value <= self.allowed
+        return within(self.value, self.allowed)
 
     @property
     def excess(self) -> float:
