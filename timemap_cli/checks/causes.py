@@ -48,7 +48,7 @@ def different_inputs(expected: Snapshot, found: Snapshot) -> Iterator[str]:
 
 def _geometry(failed: dict[str, Measure]) -> Iterator[str]:
     if turn := failed.get("map.turn"):
-        yield f"the map is turned ({turn.text}): the laser's yaw on the robot, or the heading of the localisation"
+        yield f"the map is turned ({turn.text}): {turn.cause}"
     if shift := failed.get("map.shift"):
         yield f"the map is shifted ({shift.text}): the localisation, or where the map frame lies"
     if "nodes.shift" in failed and "nodes.turn" in failed:

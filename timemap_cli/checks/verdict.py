@@ -36,6 +36,7 @@ class Measure:
     unit: str  # empty: a share 0..1
     text: str  # one sentence
     spots: tuple[Spot, ...] = ()  # worst first
+    cause: str = ""  # what would make it, where more than its name tells that
 
     @property
     def passed(self) -> bool:

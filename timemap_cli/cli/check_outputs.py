@@ -43,10 +43,10 @@ def wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
 def require_writable(wanted: Sequence[Output]) -> None:
     """UsageError where a file cannot be written: before the work, not after it."""
     files = [file for _, file in wanted if file is not None]
-    for file in files:
-        if files.count(file) > 1:
+    for one in files:
+        if files.count(one) > 1:
             raise UsageError(
-                f"two formats go to {file}", hint="--format junit=junit.xml --format json=check.json"
+                f"two formats go to {one}", hint="--format junit=junit.xml --format json=check.json"
             )
     for form, file in wanted:
         if file is not None:
