@@ -77,7 +77,9 @@ def _check(
         raise UsageError(f"{place} is no check", hint=_FORM)
     _known(row, _KEYS, place)
     sources = _sources(row, place)
-    if not isinstance(row.get("baseline"), str):
+    if not isinstance(row.get("name", ""), str | int):
+        raise UsageError(f"the name of {place} is no text", hint=_FORM)
+    if not isinstance(row.get("baseline"), str) or not row["baseline"]:
         raise UsageError(f"{place} has no baseline", hint=_FORM)
     folder = path.parent
     config = row.get("config")

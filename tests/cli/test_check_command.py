@@ -106,6 +106,14 @@ def test_the_github_format_appends_to_the_summary_of_the_job(folder):
     assert text.startswith("before\n### ❌ box: failed\n")
 
 
+def test_a_summary_that_cannot_be_written_changes_no_verdict(folder):
+    variables = {"GITHUB_STEP_SUMMARY": "no/summary.md"}
+    args = ("--format", "github", "--format", "junit=j.xml")
+    ran = timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", *args, variables=variables)
+    assert (ran.code, (folder / "j.xml").exists()) == (4, True)
+    assert "cannot write the job's summary no/summary.md: no such file or directory" in ran.err
+
+
 def test_what_has_no_node_in_common_ends_with_2(folder):
     far = [type(node)(node.x + 50, node.y) for node in (NODE,)]
     write(folder / "far.timemap.mcap", [(0, all_levels(box=False))], far)
@@ -205,6 +213,10 @@ def test_two_checks_of_a_suite_do_not_write_one_baseline(folder):
         ("- a", "s.yaml holds no suite"),
         ("checks: [a]", "checks[0] of s.yaml is no check"),
         ("checks: [{logs: [a.mcap]}]", "checks[0] of s.yaml has no baseline"),
+        ("checks: [{logs: a, baseline: ''}]", "checks[0] of s.yaml has no baseline"),
+        ("checks: [{name: null, logs: a, baseline: b.yaml}]", "the name of checks[0] of s.yaml is no text"),
+        ("checks: " + "[" * 2000, "s.yaml is nested too deeply"),
+        ('checks: !!int ""', "s.yaml is not YAML"),
         ("checks: [{baseline: b.yaml}]", "checks[0] of s.yaml needs logs or a result, one of the two"),
         ("checks: [{logs: [3], baseline: b.yaml}]", "logs in checks[0] of s.yaml is no list of recordings"),
         ("checks: [{log: [a], baseline: b.yaml}]", "unknown key log in checks[0] of s.yaml"),

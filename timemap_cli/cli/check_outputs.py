@@ -68,8 +68,16 @@ def tell(
         else:
             _write(file, form, text)
         if form == "github" and (summary := terminal.variables.get("GITHUB_STEP_SUMMARY")):
-            with Path(summary).open("a", encoding="utf-8") as stream:
-                stream.write(_formatted("markdown", cases) + "\n")
+            _append(terminal, Path(summary), _formatted("markdown", cases) + "\n")
+
+
+def _append(terminal: Terminal, summary: Path, text: str) -> None:
+    """Add to the job's summary; one that cannot be written changes no verdict."""
+    try:
+        with summary.open("a", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        terminal.warn(f"cannot write the job's summary {summary}: {(error.strerror or str(error)).lower()}")
 
 
 def _write(path: Path, form: str, text: str) -> None:
