@@ -64,6 +64,12 @@ def test_what_one_node_saw_does_not_take_the_partner_of_what_three_saw():
     assert round(found["events.place"].value, 6) == 0.1
 
 
+def test_what_three_nodes_saw_is_not_new_where_two_expected_ones_saw_it():
+    weak = replace(EVENT, nodes=2)
+    assert figures([weak], [weak, replace(EVENT, x=2.1)])["events.new"].passed
+    assert figures([weak, replace(EVENT, x=2.1)], [weak])["events.missing"].passed
+
+
 def test_an_event_that_is_off_by_its_tolerance_to_the_centimetre_passes():
     expected, found = replace(EVENT, x=1.0), replace(EVENT, x=1.3)  # 0.30000000000000004 m in binary
     assert figures([expected], [found])["events.place"].passed

@@ -35,12 +35,12 @@ def _pairs(
 ) -> list[tuple[SeenEvent, SeenEvent]]:
     """Events of one kind at nearly the same place; each has one partner at most.
 
-    Events that enough nodes saw on both sides come first, or on neither; then those that are within the tolerances,
-    since a door that opens twice is seen twice at one place; then the nearest.
+    Events that enough nodes saw come first, since one without a partner is missed or new; then those that are within
+    the tolerances, since a door that opens twice is seen twice at one place; then the nearest.
     """
     near = [
         (
-            (one.nodes >= _FIRM_NODES) != (other.nodes >= _FIRM_NODES),
+            -sum(event.nodes >= _FIRM_NODES for event in (one, other)),
             not within(_apart(one, other), allowed["events.place"])
             or not within(_delay(one, other), allowed["events.time"]),
             _apart(one, other),
