@@ -89,7 +89,9 @@ def update(one: Check, progress: Progress | None = None) -> Updated:
     with _result(one, nodes, progress) as (result, summary), ResultReader(result) as reader:
         found = taken(reader)
     tolerances = {**(old.tolerances if old else {}), **one.tolerances}
-    with AtomicFile(one.baseline, force=True, replaced="a baseline") as file:
+    with AtomicFile(
+        one.baseline, force=True, may_replace=baseline_file.is_baseline, replaced="a baseline"
+    ) as file:
         file.write(baseline_file.dump(Baseline(found, tolerances)).encode())
         file.commit()
     return Updated(one.baseline, found, _against(old, found, one), *_trouble(summary))

@@ -46,9 +46,19 @@ def run(checks: Sequence[Check], jobs: int) -> list[CheckedCase]:
     return _mapped(checked, checks, jobs)
 
 
-def update_all(checks: Sequence[Check], jobs: int) -> list[Updated]:
-    """Write the baseline of every check anew; the suite's tolerances stay in the suite."""
-    return _mapped(update, [replace(one, tolerances={}) for one in checks], jobs)
+def update_all(checks: Sequence[Check], overrides: Mapping[str, float], jobs: int) -> list[Updated]:
+    """Write the baseline of every check anew; `overrides` are kept in each, the suite's tolerances stay in the suite.
+
+    UsageError, and nothing is written, where two checks have one baseline: the last would win.
+    """
+    places = [one.baseline.resolve() for one in checks]
+    for one, place in zip(checks, places, strict=True):
+        if places.count(place) > 1:
+            raise UsageError(
+                f"{one.baseline} is the baseline of more than one check",
+                hint="--update-baseline on one of them alone",
+            )
+    return _mapped(update, [replace(one, tolerances=overrides) for one in checks], jobs)
 
 
 def _mapped(work: Callable[[Check], T], checks: Sequence[Check], jobs: int) -> list[T]:
@@ -67,7 +77,9 @@ def _check(
         raise UsageError(f"{place} is no check", hint=_FORM)
     _known(row, _KEYS, place)
     sources = _sources(row, place)
-    if not isinstance(row.get("baseline"), str):
+    if not isinstance(row.get("name", ""), str | int):
+        raise UsageError(f"the name of {place} is no text", hint=_FORM)
+    if not isinstance(row.get("baseline"), str) or not row["baseline"]:
         raise UsageError(f"{place} has no baseline", hint=_FORM)
     folder = path.parent
     config = row.get("config")

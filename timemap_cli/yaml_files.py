@@ -33,7 +33,9 @@ def parsed_yaml(text: str, place: str, what: str = "settings", hint: str = SHOWN
 
     try:
         values = YAML(typ="safe", pure=True).load(text)
-    except (YAMLError, ValueError) as error:
+    except RecursionError as error:
+        raise UsageError(f"{place} is nested too deeply", hint=hint) from error
+    except (YAMLError, ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
         raise UsageError(f"{place} is not YAML: {_yaml_trouble(error)}", hint=hint) from error
     if values is None:
         return {}

@@ -41,6 +41,28 @@ def test_names_with_odd_letters_are_read_back(tmp_path, baseline):
     assert read(path).expected.inputs == odd.inputs
 
 
+def test_letters_beyond_16_bits_and_control_letters_are_read_back(tmp_path, baseline):
+    name = "\U0001f916 \\ud83d\\ude00 \x7f\x85\x1b.mcap"
+    odd = replace(baseline.expected, inputs=(replace(baseline.expected.inputs[0], name=name),))
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(Baseline(odd, {})), encoding="ascii")
+    assert read(path).expected.inputs[0].name == name
+
+
+@pytest.mark.parametrize("name", ["null", "true", "false"])
+def test_a_level_may_have_a_name_that_is_a_word_of_yaml(tmp_path, baseline, name):
+    level = replace(baseline.expected, levels={name: baseline.expected.levels["short"]})
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(Baseline(level, {})))
+    assert list(read(path).expected.levels) == [name]
+
+
+def test_lines_may_end_as_on_windows(tmp_path, baseline):
+    path = tmp_path / "b.yaml"
+    path.write_bytes(dump(baseline).replace("\n", "\r\n").encode())
+    assert held(read(path)) == held(baseline)
+
+
 def test_a_ring_has_a_line_of_its_own_so_that_a_difference_is_local(baseline):
     ranges = baseline.expected.levels["short"].ranges.copy()
     ranges[1, 7] += 0.05
@@ -81,10 +103,33 @@ def test_another_file_is_no_baseline(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("scans: {read: 1000", "scans: {reed: 1000", "is damaged: 'read'"),
+        ("scans: {read: 1000", "scans: {reed: 1000", "is damaged: scans.read is missing"),
         ("    1: {digest", "    7: {digest", "is damaged: there is no node 7"),
         ('ranges: "', 'ranges: "?1 ', "is damaged: 361 angle bins instead of 360"),
         ("events:\n-", "events:\n- {", "is damaged: "),
+        ("angle_bins: 360", "angle_bins: .inf", "is damaged: angle_bins is out of all range"),
+        (
+            "angle_bins: 360",
+            "angle_bins: 1000000000",
+            "is damaged: angle_bins is not a whole number from 1 to",
+        ),
+        ("0: {x: 1.0", "0: {x: .nan", "is damaged: nodes.0.x is out of all range"),
+        ("    1: {digest", "    0.5: {digest", "is damaged: levels.short.0.5 is not a whole number"),
+        ('ranges: "', 'ranges: "?9999999 ?9999999 ', "angle bins instead of 360"),
+        (
+            'ranges: "',
+            'ranges: "99999999999999999999 ',
+            "is damaged: '99999999999999999999' is no part of a ring",
+        ),
+        ('ranges: "', 'ranges: "1 C ', "is damaged: 'C' counts below zero"),
+        ('name: "monday.mcap"', "name: 5", r"is damaged: inputs\[0\].name is not a text: 5"),
+        ("hit: 0.99", "hit: many", "is damaged: beams./scan.hit is not a number: many"),
+        ('kind: "appeared"', "kind: 1", r"is damaged: events\[0\].kind is not a text: 1"),
+        ('since: "1970-01-01T00:01:40Z"', 'since: "soon"', "is damaged: 'soon' is not a time"),
+        ("  map.radius: 10.0", "  7: 10.0", "is damaged: settings.7 is not a name"),
+        ("map_frame:", 'odd: !!int ""\nmap_frame:', "is damaged: "),
+        ("map_frame:", f"odd: {'[' * 2000}\nmap_frame:", "is damaged: it is nested too deeply"),
+        ("tolerances:\n", "tolerance:\n", "is damaged: tolerances is missing"),
     ],
 )
 def test_a_damaged_baseline_is_told(tmp_path, baseline, old, new, message):
@@ -93,6 +138,21 @@ def test_a_damaged_baseline_is_told(tmp_path, baseline, old, new, message):
     path = tmp_path / "b.yaml"
     path.write_text(text.replace(old, new, 1))
     with pytest.raises(TimemapError, match=message):
+        read(path)
+
+
+def test_a_damaged_baseline_is_told_with_what_mends_it(tmp_path, baseline):
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(baseline)[:-9])
+    with pytest.raises(TimemapError) as told:
+        read(path)
+    assert told.value.hint == "remove it, or name another file: --update-baseline makes it anew then"
+
+
+def test_a_tolerance_that_no_number_can_hold_is_refused(tmp_path, baseline):
+    path = tmp_path / "b.yaml"
+    path.write_text(dump(baseline).replace("ranges.moved: 0.05", f"ranges.moved: {10**400}"))
+    with pytest.raises(UsageError, match=r"tolerance ranges.moved in .* is not a number from 0 on"):
         read(path)
 
 

@@ -46,6 +46,23 @@ def test_a_map_turned_by_a_degree_fails_and_names_the_heading():
     assert turn.value == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.parametrize("degrees", [-1.0, 1.0])
+def test_a_map_turned_as_one_about_its_origin_names_its_frame_and_not_the_laser(degrees):
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    turned = ROOM @ np.kron(np.eye(2), [[cos, sin], [-sin, cos]])  # each end of a wall as a row
+    one = verdict(snapshot(seen(NODES, turned)))
+    assert not {"nodes.shift", "nodes.turn"} & {name for name, _ in failed(one)}
+    turn = next(measure for measure in one.measures if measure.name == "map.turn")
+    assert turn.value == pytest.approx(1.0, abs=0.1)
+    assert turn.text.startswith(f"all nodes are turned by {'-' if degrees < 0 else '+'}")
+    assert turn.text.endswith(" deg, and about one point")
+    assert (
+        one.causes[0]
+        == f"the map is turned ({turn.text}): the map of the localisation, or where the map frame lies"
+    )
+    assert not any("the laser's" in cause for cause in one.causes)
+
+
 def test_a_map_shifted_by_three_centimetres_fails_and_names_the_localisation():
     one = verdict(snapshot(seen(NODES, ROOM, shift=(0.03, 0.0))))
     assert ("map.shift", None) in failed(one)
@@ -117,7 +134,20 @@ def test_missing_scans_fail_with_their_share():
 def test_scans_dropped_for_another_reason_fail_with_the_reason():
     one = verdict(snapshot(scans=Scans(1000, 900, {"no_pose": 10, "lost": 90})))
     assert failed(one) == [("scans.used", None)]
-    assert one.causes == ("scans are dropped for other reasons: lost 90 instead of 0",)
+    assert one.causes == ("another share of the scans is dropped: lost 90 instead of 0",)
+
+
+def test_as_many_dropped_scans_of_fewer_are_told_with_both_counts():
+    one = verdict(snapshot(scans=Scans(200, 190, {"no_pose": 10})))
+    assert ("scans.used", None) in failed(one)
+    assert one.causes[-1] == "another share of the scans is dropped: 10 of 200 instead of 10 of 1000"
+
+
+def test_a_share_that_is_off_by_its_tolerance_passes():
+    one = verdict(
+        snapshot(), snapshot(scans=Scans(1000, 980, {"no_pose": 20}))
+    )  # 0.010000000000000009 in binary
+    assert failed(one) == []
 
 
 def test_missing_returns_that_count_as_hits_fail_though_the_map_is_the_same():

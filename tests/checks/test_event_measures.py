@@ -49,3 +49,27 @@ def test_a_later_event_is_told_by_its_delay():
 def test_an_event_that_was_undone_and_should_hold_is_out_of_any_tolerance():
     found = figures([EVENT], [replace(EVENT, until_ns=101 * SECOND)])["events.time"]
     assert not found.passed
+
+
+def test_of_two_events_at_one_place_each_is_held_against_the_one_of_its_time():
+    later = replace(EVENT, x=2.02, since_ns=5000 * SECOND)
+    found = figures([EVENT, later], [replace(EVENT, x=2.02), replace(later, x=2.0)])
+    assert all(one.passed for one in found.values())
+    assert found["events.time"].value == 0
+
+
+def test_what_one_node_saw_does_not_take_the_partner_of_what_three_saw():
+    found = figures([EVENT], [replace(EVENT, nodes=1), replace(EVENT, x=2.1)])
+    assert found["events.new"].passed
+    assert round(found["events.place"].value, 6) == 0.1
+
+
+def test_what_three_nodes_saw_is_not_new_where_two_expected_ones_saw_it():
+    weak = replace(EVENT, nodes=2)
+    assert figures([weak], [weak, replace(EVENT, x=2.1)])["events.new"].passed
+    assert figures([weak, replace(EVENT, x=2.1)], [weak])["events.missing"].passed
+
+
+def test_an_event_that_is_off_by_its_tolerance_to_the_centimetre_passes():
+    expected, found = replace(EVENT, x=1.0), replace(EVENT, x=1.3)  # 0.30000000000000004 m in binary
+    assert figures([expected], [found])["events.place"].passed

@@ -21,6 +21,12 @@ def test_a_surface_that_three_nodes_see_off_is_a_place():
     assert place.distance == 0.15  # of 23 the twelfth
 
 
+def test_the_last_bit_of_a_distance_of_whole_centimetres_decides_nothing():
+    for distance in (np.nextafter(0.08, 0), 0.08, np.nextafter(0.08, 1)):
+        seen = ends(*((*group[:4], distance) for group in THREE_SEE_IT))
+        assert moved_places(seen, 0.08, nodes=9) == []
+
+
 def test_what_two_nodes_see_is_no_place_unless_there_are_no_more():
     two = ends(*(group for group in THREE_SEE_IT if group[3] != 7), (6, 2.1, 3.1, 6, 0.15))
     assert moved_places(two, 0.08, nodes=9) == []

@@ -83,6 +83,20 @@ def test_outputs_give_way_to_newer_ones_and_nothing_else_does(folder):
             assert (ran.code, ran.out, ran.err) == (code, "", "")
 
 
+def test_a_file_that_cannot_be_written_is_told_before_anything_is_read(folder):
+    (folder / "j.xml").write_text("mine")
+    ran = timemap("check", "no.mcap", "--baseline", "b.yaml", "--format", "junit=j.xml")
+    assert (ran.code, (folder / "j.xml").read_text()) == (2, "mine")
+    assert ran.err.startswith("error: j.xml exists and is not the junit of a check")
+
+
+def test_a_damaged_baseline_is_not_written_anew_over_what_a_reviewer_may_want_to_see(folder):
+    (folder / "b.yaml").write_text(text := (folder / "b.yaml").read_text()[:-9])
+    ran = timemap("check", *PLAIN, "--update-baseline")
+    assert (ran.code, (folder / "b.yaml").read_text()) == (1, text)
+    assert "try: remove it, or name another file" in ran.err
+
+
 def test_the_github_format_appends_to_the_summary_of_the_job(folder):
     summary = folder / "summary.md"
     summary.write_text("before\n")
@@ -90,6 +104,14 @@ def test_the_github_format_appends_to_the_summary_of_the_job(folder):
     timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", "--format", "github", variables=variables)
     text = summary.read_text()
     assert text.startswith("before\n### ❌ box: failed\n")
+
+
+def test_a_summary_that_cannot_be_written_changes_no_verdict(folder):
+    variables = {"GITHUB_STEP_SUMMARY": "no/summary.md"}
+    args = ("--format", "github", "--format", "junit=j.xml")
+    ran = timemap("check", "box.timemap.mcap", "--baseline", "b.yaml", *args, variables=variables)
+    assert (ran.code, (folder / "j.xml").exists()) == (4, True)
+    assert "cannot write the job's summary no/summary.md: no such file or directory" in ran.err
 
 
 def test_what_has_no_node_in_common_ends_with_2(folder):
@@ -110,6 +132,9 @@ def test_what_has_no_node_in_common_ends_with_2(folder):
         ([*BOTH, "--baseline", "b.yaml"], "plain.timemap.mcap is a result: it is checked alone"),
         ([*PLAIN, "--format", "xml"], "unknown format xml"),
         ([*PLAIN, "--format", "json", "--format", "github"], "standard output takes one format"),
+        ([*PLAIN, "--format", "junit="], "--format junit= names no file"),
+        ([*PLAIN, "--format", "junit=out", "--format", "json=out"], "two formats go to out"),
+        (["no.mcap", "--baseline", "b.yaml", "--format", "junit=no/j.xml"], "cannot write no/j.xml: there is no"),
         ([*PLAIN, "--tolerance", "x=1"], "unknown tolerance x in --tolerance"),
         ([*PLAIN, "--suite", "s.yaml"], "plain.timemap.mcap does not go with --suite: s.yaml says it for each"),
         ([*PLAIN, "--update-baseline", "--format", "json"], "--format does not go with --update-baseline"),
@@ -179,6 +204,23 @@ def test_a_suite_writes_all_its_baselines_and_keeps_its_tolerances_to_itself(fol
     assert "\ntolerances: {}\n" in (folder / "new.yaml").read_text()
 
 
+def test_a_tolerance_of_an_option_stays_in_every_baseline_that_a_suite_writes(folder):
+    (folder / "s.yaml").write_text("checks: [{result: box.timemap.mcap, baseline: new.yaml}]")
+    timemap("check", "--suite", "s.yaml", "--update-baseline", "--tolerance", "scans.used=0.5")
+    assert "\ntolerances:\n  scans.used: 0.5\n" in (folder / "new.yaml").read_text()
+
+
+def test_two_checks_of_a_suite_do_not_write_one_baseline(folder):
+    rows = (
+        "{name: a, result: box.timemap.mcap, baseline: x.yaml}",
+        "{name: b, result: plain.timemap.mcap, baseline: ./x.yaml}",
+    )
+    (folder / "s.yaml").write_text(f"checks: [{', '.join(rows)}]")
+    ran = timemap("check", "--suite", "s.yaml", "--update-baseline")
+    assert (ran.code, (folder / "x.yaml").exists()) == (2, False)
+    assert ran.err.startswith("error: x.yaml is the baseline of more than one check\n")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -187,6 +229,10 @@ def test_a_suite_writes_all_its_baselines_and_keeps_its_tolerances_to_itself(fol
         ("- a", "s.yaml holds no suite"),
         ("checks: [a]", "checks[0] of s.yaml is no check"),
         ("checks: [{logs: [a.mcap]}]", "checks[0] of s.yaml has no baseline"),
+        ("checks: [{logs: a, baseline: ''}]", "checks[0] of s.yaml has no baseline"),
+        ("checks: [{name: null, logs: a, baseline: b.yaml}]", "the name of checks[0] of s.yaml is no text"),
+        ("checks: " + "[" * 2000, "s.yaml is nested too deeply"),
+        ('checks: !!int ""', "s.yaml is not YAML"),
         ("checks: [{baseline: b.yaml}]", "checks[0] of s.yaml needs logs or a result, one of the two"),
         ("checks: [{logs: [3], baseline: b.yaml}]", "logs in checks[0] of s.yaml is no list of recordings"),
         ("checks: [{log: [a], baseline: b.yaml}]", "unknown key log in checks[0] of s.yaml"),

@@ -1,9 +1,10 @@
 import json
+from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 import pytest
 
-from tests.reports.checks import ERROR, FAILED, LOST, PASSED, UNEQUAL
+from tests.reports.checks import ERROR, FAILED, LOST, PASSED, SCANS, UNEQUAL, verdict
 from timemap_cli.checks.verdict import CheckedCase, exit_code_of
 from timemap_cli.errors import UsageError
 from timemap_cli.reports.check_github import check_github
@@ -165,3 +166,19 @@ def test_markdown_has_a_row_for_each_failure_and_all_figures_folded():
 
 def test_a_pipe_in_a_name_does_not_end_a_cell_of_markdown():
     assert "### ⚠️ a\\|b\\_c: error" in check_markdown([CheckedCase("a|b_c", "d", None, UsageError("e"))])
+
+
+def test_a_name_inside_of_an_element_of_markdown_has_no_backslashes():
+    text = check_markdown([CheckedCase("x", "a_b/<c>\r\n&.yaml", verdict("x", SCANS))])
+    assert "<summary>All 1 figures, against a_b/&lt;c> &amp;.yaml</summary>" in text
+
+
+def test_lost_data_is_told_wherever_the_check_passed():
+    assert "**Data was lost**\n\n- dock.bag is cut off\n" in check_markdown([LOST])
+    properties = ET.fromstring(check_junit([LOST]))[0].find("properties")
+    assert ("warning", "dock.bag is cut off") in [(one.get("name"), one.get("value")) for one in properties]
+
+
+def test_github_tells_lost_data_of_a_failed_check_too():
+    last = check_github([replace(FAILED, lost=True, warnings=("hall.bag is cut off",))]).splitlines()[-1]
+    assert last == "::warning file=hall.yaml,title=timemap check hall::hall.bag is cut off"

@@ -1,14 +1,15 @@
 """A baseline as a text file that a reviewer reads: a line for each setting, event, node, and ring of a level."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from timemap_cli.checks.coding import decoded, encoded
+from timemap_cli.checks.fields import Fields
 from timemap_cli.checks.snapshot import Input, LevelRings, Scans, SeenEvent, Snapshot
 from timemap_cli.checks.tolerances import checked
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
@@ -17,6 +18,10 @@ from timemap_cli.times import format_time, parse_time
 
 FORMAT = "timemap.baseline/1"
 HEAD = "# What the map of these recordings is expected to be, for `timemap check`; --update-baseline writes it anew.\n"
+_ANEW = "remove it, or name another file: --update-baseline makes it anew then"
+_PAIR = re.compile(r"\\ud[89ab][0-9a-f]{2}\\ud[c-f][0-9a-f]{2}")  # how JSON writes a letter beyond 16 bits
+_WORDS = ("null", "true", "false")  # names of levels that YAML would read as something else
+_BINS = (1, 3600)  # angle bins of a node
 _RINGS_NOTE = (
     "# Ranges round the node, counter-clockwise from the map's +x: centimetres, then a letter for each angle bin,",
     "# a..z 1..26 cm farther than the one before, A..Z nearer, = as far; ?12 twelve unknown bins, *3 three clear ones.",
@@ -53,41 +58,59 @@ def read(path: Path) -> Baseline:
     from ruamel.yaml.error import YAMLError
 
     try:
-        text = path.read_text(encoding="utf-8")
+        with path.open("rb") as file:
+            head = file.read(1000)
+            if not _begins_like_one(head):  # a recording of gigabytes, perhaps
+                raise not_a_baseline(path)
+            text = (head + file.read()).decode()
     except FileNotFoundError as error:
         raise _missing(path) from error
     except UnicodeDecodeError as error:
         raise not_a_baseline(path) from error
     except OSError as error:
         raise TimemapError(f"cannot read {path}: {(error.strerror or str(error)).lower()}") from error
-    if f"\nformat: {FORMAT}\n" not in f"\n{text[:1000]}":
-        raise not_a_baseline(path)
     try:
-        return _baseline(YAML(typ="safe", pure=True).load(text), path)
+        return _baseline(Fields(YAML(typ="safe", pure=True).load(text), ""), path)
     except UsageError:
         raise
-    except (YAMLError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise TimemapError(
-            f"{path} is damaged: {' '.join(str(error).split())[:200]}", hint="--update-baseline makes it anew"
-        ) from error
+    except RecursionError as error:
+        raise _damaged(path, "it is nested too deeply") from error
+    except (YAMLError, ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
+        raise _damaged(path, str(error)) from error
+
+
+def is_baseline(path: Path) -> bool:
+    """Whether a file begins like a baseline, of any version: only such a file may give way to a new one."""
+    if not path.is_file():  # opening a pipe would wait for somebody to write
+        return False
+    with path.open("rb") as file:
+        return _begins_like_one(file.read(1000), FORMAT.partition("/")[0])
+
+
+def _begins_like_one(head: bytes, form: str = f"{FORMAT}\n") -> bool:
+    return f"\nformat: {form}".encode() in b"\n" + head.replace(b"\r\n", b"\n")
+
+
+def _damaged(path: Path, trouble: str) -> TimemapError:
+    return TimemapError(f"{path} is damaged: {' '.join(trouble.split())[:200]}", hint=_ANEW)
 
 
 def not_a_baseline(path: Path) -> UsageError:
     """The error for a file that is no baseline, or one of another version."""
-    return UsageError(f"{path} is not a baseline of the format {FORMAT}", hint="--update-baseline makes one")
+    return UsageError(f"{path} is not a baseline of the format {FORMAT}", hint=_ANEW)
 
 
 def _lines(baseline: Baseline) -> Iterator[str]:
     one = baseline.expected
     yield f"format: {FORMAT}"
-    yield f"version: {json.dumps(one.version)}"
+    yield f"version: {_quoted(one.version)}"
     yield from _list("inputs", [{"name": i.name, "sha256": i.sha256} for i in one.inputs])
     yield from _mapping("settings", one.settings)
-    yield f"map_frame: {json.dumps(one.map_frame)}"
+    yield f"map_frame: {_quoted(one.map_frame)}"
     yield f"radius: {one.radius}"
     yield f"angle_bins: {one.angle_bins}"
-    yield f"no_return: {json.dumps(one.no_return)}"
-    yield from _rows("beams", {json.dumps(topic): kinds for topic, kinds in one.beams.items()})
+    yield f"no_return: {_quoted(one.no_return)}"
+    yield from _rows("beams", {_quoted(topic): kinds for topic, kinds in one.beams.items()})
     dropped = ", ".join(f"{reason}: {count}" for reason, count in sorted(one.scans.dropped.items()))
     yield f"scans: {{read: {one.scans.read}, used: {one.scans.used}, dropped: {{{dropped}}}}}"
     yield from _mapping("tolerances", dict(sorted(baseline.tolerances.items())))
@@ -96,13 +119,13 @@ def _lines(baseline: Baseline) -> Iterator[str]:
     yield from _RINGS_NOTE
     yield "levels:"
     for level, rings in one.levels.items():
-        yield f"  {level}:"
+        yield f"  {_quoted(level) if level in _WORDS else level}:"
         yield from (_ring_line(node, rings) for node in range(len(one.nodes)) if rings.digests[node])
 
 
 def _mapping(name: str, values: Mapping[str, object]) -> Iterator[str]:
     yield f"{name}:" if values else f"{name}: {{}}"
-    yield from (f"  {key}: {json.dumps(value)}" for key, value in values.items())
+    yield from (f"  {key}: {_quoted(value)}" for key, value in values.items())
 
 
 def _rows(name: str, rows: Mapping[str, Mapping[str, object]]) -> Iterator[str]:
@@ -116,7 +139,17 @@ def _list(name: str, rows: Sequence[Mapping[str, object]]) -> Iterator[str]:
 
 
 def _flow(row: Mapping[str, object]) -> str:
-    return "{" + ", ".join(f"{key}: {json.dumps(value)}" for key, value in row.items()) + "}"
+    return "{" + ", ".join(f"{key}: {_quoted(value)}" for key, value in row.items()) + "}"
+
+
+def _quoted(value: object) -> str:
+    """A value as YAML reads it, in ASCII: as JSON writes it, but letters beyond 16 bits and DEL in YAML's own way."""
+    return _PAIR.sub(_as_yaml, json.dumps(value).replace("\x7f", "\\x7f"))
+
+
+def _as_yaml(pair: "re.Match[str]") -> str:
+    letter: str = json.loads(f'"{pair[0]}"')
+    return f"\\U{ord(letter):08x}"
 
 
 def _event_values(event: SeenEvent) -> dict[str, object]:
@@ -141,49 +174,66 @@ def _ring_line(node: int, rings: LevelRings) -> str:
     return f'    {node}: {{digest: "{rings.digests[node]}", {figures}, ranges: "{encoded(ranges)}"}}'
 
 
-def _baseline(values: Any, path: Path) -> Baseline:
-    places = values["nodes"]
-    nodes = tuple(Node(float(places[i]["x"]), float(places[i]["y"])) for i in range(len(places)))
-    bins = int(values["angle_bins"])
-    scans = values["scans"]
+def _baseline(values: Fields, path: Path) -> Baseline:
+    places = values.part("nodes").numbered()
+    if list(places) != list(range(len(places))):
+        raise ValueError("the nodes are not numbered from 0 on")
+    nodes = tuple(Node(place.number("x"), place.number("y")) for place in places.values())
+    bins = values.whole("angle_bins", *_BINS)
+    scans = values.part("scans")
     expected = Snapshot(
-        version=str(values["version"]),
-        inputs=tuple(Input(one["name"], one["sha256"]) for one in values["inputs"]),
-        settings=dict(values["settings"]),
-        map_frame=str(values["map_frame"]),
-        radius=float(values["radius"]),
+        version=values.text("version"),
+        inputs=tuple(Input(one.text("name"), one.text("sha256")) for one in values.rows("inputs")),
+        settings=values.part("settings").plain(),
+        map_frame=values.text("map_frame"),
+        radius=values.number("radius"),
         angle_bins=bins,
-        no_return=str(values["no_return"]),
-        beams={topic: dict(kinds) for topic, kinds in values["beams"].items()},
-        scans=Scans(int(scans["read"]), int(scans["used"]), dict(scans["dropped"])),
+        no_return=values.text("no_return"),
+        beams={topic: kinds.numbers() for topic, kinds in values.part("beams").parts().items()},
+        scans=Scans(scans.whole("read"), scans.whole("used"), scans.part("dropped").wholes()),
         nodes=nodes,
-        levels={name: _rings(rows or {}, len(nodes), bins) for name, rows in values["levels"].items()},
-        events=tuple(_event(one) for one in values["events"]),
+        levels=_levels(values.part("levels"), len(nodes), bins),
+        events=tuple(_event(one) for one in values.rows("events")),
     )
-    return Baseline(expected, checked(values["tolerances"], str(path)))
+    return Baseline(expected, checked(values.part("tolerances").plain(), str(path)))
 
 
-def _rings(rows: Mapping[int, Mapping[str, Any]], nodes: int, bins: int) -> LevelRings:
+def _levels(levels: Fields, nodes: int, bins: int) -> dict[str, LevelRings]:
+    """The rings of each level; one that knows no node has nothing behind its name."""
+    return {
+        name: _rings(levels.part(name).numbered() if levels.has(name) else {}, nodes, bins)
+        for name in levels.plain()
+    }
+
+
+def _rings(rows: Mapping[int, Fields], nodes: int, bins: int) -> LevelRings:
     ranges = np.full((nodes, bins), np.nan)
     support = np.zeros(nodes)
     digests = [""] * nodes
     for node, row in rows.items():
         if not 0 <= node < nodes:
             raise ValueError(f"there is no node {node}")
-        ranges[node] = decoded(str(row["ranges"]), bins)
-        support[node] = float(row["support"])
-        digests[node] = str(row["digest"])
+        ranges[node] = decoded(row.text("ranges"), bins)
+        support[node] = row.number("support")
+        digests[node] = row.text("digest")
     return LevelRings(ranges, support, tuple(digests))
 
 
-def _event(values: Mapping[str, Any]) -> SeenEvent:
+def _event(values: Fields) -> SeenEvent:
     return SeenEvent(
-        kind=str(values["kind"]),
-        x=float(values["x"]),
-        y=float(values["y"]),
-        size=float(values["size"]),
-        nodes=int(values["nodes"]),
-        since_ns=parse_time(values["since"], 0, 0),
-        until_ns=None if values["until"] is None else parse_time(values["until"], 0, 0),
-        adopted=tuple(values["adopted"]),
+        kind=values.text("kind"),
+        x=values.number("x"),
+        y=values.number("y"),
+        size=values.number("size"),
+        nodes=values.whole("nodes"),
+        since_ns=_time(values.text("since")),
+        until_ns=_time(values.text("until")) if values.has("until") else None,
+        adopted=values.texts("adopted"),
     )
+
+
+def _time(text: str) -> int:
+    try:
+        return parse_time(text, 0, 0)
+    except UsageError as error:
+        raise ValueError(error.message) from error

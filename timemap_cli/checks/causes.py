@@ -26,7 +26,7 @@ def likely_causes(expected: Snapshot, found: Snapshot, failures: Sequence[Measur
         yield f"{100 * abs(change):.1f} % {which} scans: a part of a recording, or single scans of it"
     yield from _geometry(failed)
     if "scans.used" in failed:
-        yield f"scans are dropped for other reasons: {_dropped(expected, found)}"
+        yield f"another share of the scans is dropped: {_dropped(expected, found)}"
     yield from different_inputs(expected, found)
 
 
@@ -48,7 +48,7 @@ def different_inputs(expected: Snapshot, found: Snapshot) -> Iterator[str]:
 
 def _geometry(failed: dict[str, Measure]) -> Iterator[str]:
     if turn := failed.get("map.turn"):
-        yield f"the map is turned ({turn.text}): the laser's yaw on the robot, or the heading of the localisation"
+        yield f"the map is turned ({turn.text}): {turn.cause}"
     if shift := failed.get("map.shift"):
         yield f"the map is shifted ({shift.text}): the localisation, or where the map frame lies"
     if "nodes.shift" in failed and "nodes.turn" in failed:
@@ -69,10 +69,14 @@ def _geometry(failed: dict[str, Measure]) -> Iterator[str]:
 
 
 def _dropped(expected: Snapshot, found: Snapshot) -> str:
-    reasons = {**expected.scans.dropped, **found.scans.dropped}
+    """Counts of the reasons that changed; counts that are the same are another share of more or fewer scans."""
+    was, now = expected.scans, found.scans
     told = [
-        f"{reason} {found.scans.dropped.get(reason, 0)} instead of {expected.scans.dropped.get(reason, 0)}"
-        for reason in sorted(reasons)
-        if found.scans.dropped.get(reason, 0) != expected.scans.dropped.get(reason, 0)
+        f"{reason} {now.dropped.get(reason, 0)} instead of {was.dropped.get(reason, 0)}"
+        for reason in sorted({**was.dropped, **now.dropped})
+        if now.dropped.get(reason, 0) != was.dropped.get(reason, 0)
     ]
-    return ", ".join(told)
+    return (
+        ", ".join(told)
+        or f"{now.read - now.used} of {now.read} instead of {was.read - was.used} of {was.read}"
+    )

@@ -17,7 +17,9 @@ PER_METRE = 100  # a centimetre is what a scanner measures to
 _UNKNOWN, _CLEAR = -1, -2
 _RUNS = {_UNKNOWN: "?", _CLEAR: "*"}
 _MOST = 26
-_WORD = re.compile(r"(?P<letters>[a-zA-Z=]+)|(?P<number>[0-9]+)|\?(?P<unknown>[0-9]+)|\*(?P<clear>[0-9]+)")
+_WORD = re.compile(
+    r"(?P<letters>[a-zA-Z=]+)|(?P<number>[0-9]{1,7})|\?(?P<unknown>[0-9]{1,7})|\*(?P<clear>[0-9]{1,7})"
+)
 
 
 def encoded(ranges: Floats) -> str:
@@ -49,6 +51,8 @@ def decoded(line: str, angle_bins: int) -> Floats:
         if match is None:
             raise ValueError(f"'{word[:20]}' is no part of a ring")
         codes += _codes(match, codes)
+        if len(codes) > 10 * angle_bins:  # a run that is this wrong need not fill the memory
+            break
     if len(codes) != angle_bins:
         raise ValueError(f"{len(codes)} angle bins instead of {angle_bins}")
     numbers = np.array(codes, np.float64)
@@ -77,6 +81,8 @@ def _codes(match: "re.Match[str]", before: Sequence[int]) -> list[int]:
         raise ValueError(f"'{match['letters'][:20]}' has no range to count from")
     steps = [_step(letter) for letter in match["letters"]]
     found: list[int] = (before[-1] + np.cumsum(steps)).tolist()
+    if min(found) < 0:
+        raise ValueError(f"'{match['letters'][:20]}' counts below zero")
     return found
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from timemap_cli.checks.snapshot import SeenEvent
-from timemap_cli.checks.tolerances import TOLERANCES
+from timemap_cli.checks.tolerances import TOLERANCES, within
 from timemap_cli.checks.verdict import Measure, Spot
 from timemap_cli.times import format_time
 
@@ -16,7 +16,7 @@ def event_measures(
     expected: Sequence[SeenEvent], found: Sequence[SeenEvent], allowed: Mapping[str, float]
 ) -> Iterator[Measure]:
     """Figures of the events; those that fewer than three nodes could tell are not missed and not new."""
-    pairs = _pairs(expected, found)
+    pairs = _pairs(expected, found, allowed)
     partners = {id(event) for pair in pairs for event in pair}
     for name, side, told in (
         ("events.missing", expected, "expected but not there"),
@@ -30,10 +30,24 @@ def event_measures(
     yield _latest("events.time", firm, allowed)
 
 
-def _pairs(expected: Sequence[SeenEvent], found: Sequence[SeenEvent]) -> list[tuple[SeenEvent, SeenEvent]]:
-    """Events of one kind at nearly the same place, the nearest first; each has one partner at most."""
+def _pairs(
+    expected: Sequence[SeenEvent], found: Sequence[SeenEvent], allowed: Mapping[str, float]
+) -> list[tuple[SeenEvent, SeenEvent]]:
+    """Events of one kind at nearly the same place; each has one partner at most.
+
+    Events that enough nodes saw come first, since one without a partner is missed or new; then those that are within
+    the tolerances, since a door that opens twice is seen twice at one place; then the nearest.
+    """
     near = [
-        (_apart(one, other), abs(one.since_ns - other.since_ns), i, j)
+        (
+            -sum(event.nodes >= _FIRM_NODES for event in (one, other)),
+            not within(_apart(one, other), allowed["events.place"])
+            or not within(_delay(one, other), allowed["events.time"]),
+            _apart(one, other),
+            abs(one.since_ns - other.since_ns),
+            i,
+            j,
+        )
         for i, one in enumerate(expected)
         for j, other in enumerate(found)
         if one.kind == other.kind and _apart(one, other) <= _SAME_M
@@ -41,7 +55,7 @@ def _pairs(expected: Sequence[SeenEvent], found: Sequence[SeenEvent]) -> list[tu
     taken: set[int] = set()
     given: set[int] = set()
     pairs = []
-    for _, _, i, j in sorted(near):
+    for *_, i, j in sorted(near):
         if i not in taken and j not in given:
             taken.add(i)
             given.add(j)

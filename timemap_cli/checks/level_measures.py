@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from timemap_cli.checks.pairs import SHOWN, Pair
 from timemap_cli.checks.places import Ends, MovedPlace
-from timemap_cli.checks.surfaces import Offsets, ends
+from timemap_cli.checks.surfaces import Offsets, ends, farther
 from timemap_cli.checks.tolerances import TOLERANCES
 from timemap_cli.checks.verdict import Measure, Spot
 
@@ -65,7 +65,7 @@ class _Told:
         distance = np.zeros(both.shape)
         for off in (come, gone):
             distance = np.fmax(distance, np.where(both, off.distance, 0.0))
-        moved = distance > step_m
+        moved = farther(distance, step_m)
         text = (
             f"{_percent(moved.sum(), both.sum())} of {both.sum()} angle bins moved by more than {step_m:g} m"
         )

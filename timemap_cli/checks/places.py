@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from timemap_cli.checks.surfaces import farther
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
@@ -52,7 +54,7 @@ class MovedPlace:
 
 def moved_places(ends: Ends, step_m: float, nodes: int) -> list[MovedPlace]:
     """The places where ends lie `step_m` and more off, most ends first; `nodes` is how many were compared."""
-    which = np.flatnonzero(_crowded(ends, ends.distance > step_m))
+    which = np.flatnonzero(_crowded(ends, farther(ends.distance, step_m)))
     places = [_place(ends, which[group]) for group in _touching(ends.x[which], ends.y[which])]
     least = min(_LEAST_NODES, nodes)
     found = [place for place in places if len(place.nodes) >= least]

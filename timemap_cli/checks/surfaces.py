@@ -9,6 +9,7 @@ Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
 _REACH_DEG = 20.0  # a surface is looked for so far to both sides of an end
+_TIE_M = 1e-6
 _JOINED_M = 0.3  # ends of neighbouring angle bins this near are one surface,
 _JOINED_SHARE = 0.1  # or within this share of their range: walls are met at flat angles
 
@@ -68,8 +69,16 @@ def offsets(ranges: Floats, other: Floats, apart: Floats) -> Offsets:
     return Offsets(*found)
 
 
+def farther(distance: Floats, step_m: float) -> Bools:
+    """Whether distances are more than a step, which ranges of whole centimetres often are to the last bit.
+
+    The last bit is another one with another processor, and must not decide.
+    """
+    return np.asarray(distance > step_m + _TIE_M)
+
+
 def _joined(ranges: Floats, x: Floats, y: Floats) -> Bools:
     """Whether the end of each angle bin and that of the next one are of one surface."""
     apart = np.hypot(np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y)
     nearer = np.minimum(ranges, np.roll(ranges, -1, axis=1))
-    return np.asarray(apart <= np.maximum(_JOINED_M, _JOINED_SHARE * nearer))
+    return np.asarray(apart <= np.maximum(_JOINED_M, _JOINED_SHARE * nearer) + _TIE_M)

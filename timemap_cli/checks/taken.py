@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +10,7 @@ from ruamel.yaml import YAML
 
 from timemap_cli.checks.coding import rounded
 from timemap_cli.checks.snapshot import Input, LevelRings, Scans, SeenEvent, Snapshot
+from timemap_cli.model.elementary import distance
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.results.reader import ResultReader
 
@@ -89,7 +89,7 @@ def _event(event: Mapping[str, Any]) -> SeenEvent:
         kind=event["kind"],
         x=round(event["x"], 2) + 0.0,
         y=round(event["y"], 2) + 0.0,
-        size=round(math.hypot(x_max - x_min, y_max - y_min), 2),
+        size=round(distance(x_max - x_min, y_max - y_min), 2),
         nodes=len(event["nodes"]) + len(event["against"]),
         since_ns=_whole(event["first_seen_ns"]),
         until_ns=None if until is None else _whole(until),

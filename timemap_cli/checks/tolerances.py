@@ -1,6 +1,5 @@
 """How much may differ before a check fails."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -45,9 +44,17 @@ TOLERANCES: Mapping[str, Tolerance] = {
 }
 
 
+_MOST = 1e12  # none is that large; an integer that no float can hold neither
+
+
 def defaults() -> dict[str, float]:
     """Every tolerance at its default."""
     return {name: tolerance.default for name, tolerance in TOLERANCES.items()}
+
+
+def within(value: float, allowed: float) -> bool:
+    """Whether a figure is within its tolerance; to nine digits, since 0.99 - 0.98 is more than 0.01 in binary."""
+    return value <= allowed + 1e-9 * max(1.0, allowed)
 
 
 def checked(values: Mapping[str, object], place: str) -> dict[str, float]:
@@ -60,7 +67,7 @@ def checked(values: Mapping[str, object], place: str) -> dict[str, float]:
                 f"unknown tolerance {name} in {place}",
                 hint=near[0] if near else f"one of {', '.join(TOLERANCES)}",
             )
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < _MOST:
             raise UsageError(f"tolerance {name} in {place} is not a number from 0 on: {value}")
         found[name] = float(value)
     return found

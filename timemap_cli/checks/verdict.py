@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from timemap_cli.checks.tolerances import within
 from timemap_cli.errors import ExitCode, TimemapError
 
 
@@ -35,11 +36,12 @@ class Measure:
     unit: str  # empty: a share 0..1
     text: str  # one sentence
     spots: tuple[Spot, ...] = ()  # worst first
+    cause: str = ""  # what would make it, where more than its name tells that
 
     @property
     def passed(self) -> bool:
         """Whether it is within its tolerance."""
-        return self.value <= self.allowed
+        return within(self.value, self.allowed)
 
     @property
     def excess(self) -> float:

@@ -50,7 +50,7 @@ def _beams(expected: Snapshot, found: Snapshot, allowed: Mapping[str, float]) ->
     told = [
         (
             abs(share - now.get(kind, 0.0)) / (max(share, now.get(kind, 0.0)) + _RARE),
-            f"{100 * now.get(kind, 0.0):.2f} % of the beams of {topic} are {_KINDS[kind]}, "
+            f"{100 * now.get(kind, 0.0):.2f} % of the beams of {topic} are {_KINDS.get(kind, kind)}, "
             f"{100 * share:.2f} % expected",
         )
         for topic, kinds in expected.beams.items()

@@ -79,13 +79,14 @@ def check(
         unused = "--format" if formats else "--html"
         raise UsageError(f"{unused} does not go with --update-baseline: nothing is checked then", hint=_USES)
     wanted, limits = outputs.wanted(formats), parsed(tolerances)
+    outputs.require_writable(wanted)
     if suite is not None:
         _require_alone(suite, sources, baseline, {**replaying, "html": html})
         from timemap_cli import suite as suites
 
         checks = suites.read_suite(suite, limits, exact=exact)
         if updates:
-            return _tell_updated(terminal, suites.update_all(checks, jobs))
+            return _tell_updated(terminal, suites.update_all(checks, limits, jobs))
         cases = suites.run(checks, jobs)
     else:
         one = _check(sources, baseline, limits, exact, **replaying)

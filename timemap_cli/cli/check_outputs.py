@@ -10,6 +10,7 @@ from timemap_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from timemap_cli.checks.verdict import CheckedCase
+    from timemap_cli.results.atomic_file import AtomicFile
 
 Output = tuple[str, Path | None]  # format, and the file it goes to; None: standard output
 
@@ -26,13 +27,31 @@ def wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
     """Formats and the files they go to; None is standard output, which takes one at most."""
     found: list[Output] = []
     for word in formats or ("text",):
-        name, _, file = word.partition("=")
+        name, equals, file = word.partition("=")
         if name not in _HEADS:
             raise UsageError(f"unknown format {name}", hint=f"one of {', '.join(_HEADS)}")
+        if equals and not file:
+            raise UsageError(
+                f"--format {word} names no file", hint=f"--format {name}, or --format {name}=FILE"
+            )
         found.append((name, Path(file) if file else None))
     if sum(file is None for _, file in found) > 1:
         raise UsageError("standard output takes one format", hint="--format junit=junit.xml --format github")
     return found
+
+
+def require_writable(wanted: Sequence[Output]) -> None:
+    """UsageError where a file cannot be written: before the work, not after it."""
+    files = [file for _, file in wanted if file is not None]
+    for one in files:
+        if files.count(one) > 1:
+            raise UsageError(
+                f"two formats go to {one}", hint="--format junit=junit.xml --format json=check.json"
+            )
+    for form, file in wanted:
+        if file is not None:
+            with _opened(file, form):
+                pass
 
 
 def tell(
@@ -49,18 +68,30 @@ def tell(
         else:
             _write(file, form, text)
         if form == "github" and (summary := terminal.variables.get("GITHUB_STEP_SUMMARY")):
-            with Path(summary).open("a", encoding="utf-8") as stream:
-                stream.write(_formatted("markdown", cases) + "\n")
+            _append(terminal, Path(summary), _formatted("markdown", cases) + "\n")
+
+
+def _append(terminal: Terminal, summary: Path, text: str) -> None:
+    """Add to the job's summary; one that cannot be written changes no verdict."""
+    try:
+        with summary.open("a", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        terminal.warn(f"cannot write the job's summary {summary}: {(error.strerror or str(error)).lower()}")
 
 
 def _write(path: Path, form: str, text: str) -> None:
     """Write what a check says into a file of its own, in place of what an earlier check said there."""
+    with _opened(path, form) as file:
+        file.write((text.rstrip("\n") + "\n").encode())
+        file.commit()
+
+
+def _opened(path: Path, form: str) -> "AtomicFile":
     from timemap_cli.results.atomic_file import AtomicFile
 
     may_replace = begins_with(*_HEADS[form])
-    with AtomicFile(path, force=True, may_replace=may_replace, replaced=f"the {form} of a check") as file:
-        file.write((text.rstrip("\n") + "\n").encode())
-        file.commit()
+    return AtomicFile(path, force=True, may_replace=may_replace, replaced=f"the {form} of a check")
 
 
 def _formatted(form: str, cases: "Sequence[CheckedCase]") -> str:

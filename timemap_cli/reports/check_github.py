@@ -27,6 +27,8 @@ def _case(case: CheckedCase) -> Iterator[str]:
         lines = [f"{one.text} ({compared(one)})", *causes]
         causes = []  # the first annotation tells them
         yield _command("error", case, f"{name}: {title(one)}", "\n".join(lines))
+    if case.warnings:
+        yield _command("warning", case, name, "\n".join(case.warnings))
     if case.verdict.unequal:
         yield _command("error", case, f"{name}: exact", "\n".join(case.verdict.unequal))
 

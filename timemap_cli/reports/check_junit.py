@@ -39,6 +39,7 @@ def _add_properties(suite: ET.Element, case: CheckedCase) -> None:
     if case.verdict:
         told += [("likely cause", cause) for cause in case.verdict.causes]
         told += [("note", note) for note in case.verdict.notes if note not in case.verdict.causes]
+    told += [("warning", warning) for warning in case.warnings]
     properties = ET.SubElement(suite, "properties")
     for name, value in told:
         ET.SubElement(properties, "property", {"name": name, "value": _text(value)})

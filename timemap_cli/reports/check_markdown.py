@@ -22,6 +22,7 @@ def _case(case: CheckedCase) -> Iterator[str]:
         yield ""
         return
     yield from _failures(case.verdict)
+    yield from _listed("Data was lost" if case.lost else "Warnings", case.warnings)
     yield from _listed("Likely cause", case.verdict.causes)
     yield from _listed("Not the same to the digest", case.verdict.unequal or ())
     yield from _listed("Also", [note for note in case.verdict.notes if note not in case.verdict.causes])
@@ -51,7 +52,7 @@ def _listed(heading: str, lines: Sequence[str]) -> Iterator[str]:
 
 def _all(case: CheckedCase) -> Iterator[str]:
     measures = case.verdict.measures if case.verdict else ()
-    yield f"<details><summary>All {len(measures)} figures, against {_plain(case.baseline)}</summary>"
+    yield f"<details><summary>All {len(measures)} figures, against {_html(case.baseline)}</summary>"
     yield ""
     yield "| figure | is | allowed |"
     yield "|---|---|---|"
@@ -69,4 +70,9 @@ def _plain(text: str) -> str:
     """Text of a file or a recording that Markdown and HTML read as nothing else."""
     for letter in "\\`*_[]|~":
         text = text.replace(letter, f"\\{letter}")
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace("\n", " ")
+    return _html(text)
+
+
+def _html(text: str) -> str:
+    """The same inside of an element, where Markdown reads no backslashes; always one line."""
+    return " ".join(text.replace("&", "&amp;").replace("<", "&lt;").splitlines())

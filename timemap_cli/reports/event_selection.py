@@ -4,8 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from timemap_cli.model.elementary import distance
-
 Event = Mapping[str, Any]  # as in the document of the schema timemap.changes/1
 
 
@@ -63,6 +61,8 @@ def selected(events: Sequence[Event], wanted: EventSelection, order: str) -> lis
 
 def size_m(event: Event) -> float:
     """Diagonal of an event's bounds [m]."""
+    from timemap_cli.model.elementary import distance  # NumPy, which --help can do without
+
     x_min, y_min, x_max, y_max = event["bounds"]
     return distance(x_max - x_min, y_max - y_min)
 
