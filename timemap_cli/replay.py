@@ -210,7 +210,9 @@ def _require_some_use(
             f"{message} (--nodes {nodes}: none is near enough)",
             hint=f"nodes where the robot drives, in metres of the frame {frame!r}",
         )
-    raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
+    raise TimemapError(
+        message, hint="; ".join(plan.problems) or "timemap info LOG... tells what the recordings hold"
+    )
 
 
 def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:

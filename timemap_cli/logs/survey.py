@@ -26,6 +26,7 @@ from timemap_cli.logs.selection import (
     PoseTopic,
     Seen,
     Selection,
+    gone_on_with,
     scan_candidates,
     select,
 )
@@ -74,6 +75,7 @@ class Known:
 
     static_transforms: tuple[TransformBatch, ...] = ()  # those that hold, if these recordings have none
     missing_so_far: Mapping[str, MissingReturns] = field(default_factory=dict)  # as in Survey
+    selection: Selection | None = None  # what was read of them, which not all of these recordings may hold
 
 
 NOTHING_KNOWN = Known()
@@ -86,7 +88,7 @@ def survey(recordings: Sequence[Recording], settings: Settings, known: Known = N
     """
     topics = topics_of(recordings)
     try:
-        candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+        candidates = scan_candidates(names_of(recordings), topics, _wanted(topics, settings, known))
         sample = take_sample(recordings, candidates)
         if not sample.scans:
             raise _no_scans(recordings, candidates)
@@ -94,6 +96,12 @@ def survey(recordings: Sequence[Recording], settings: Settings, known: Known = N
         return survey_sample(recordings, sample, candidates, settings, known)
     except UsageError as error:
         raise _with_damage(error, recordings) from error
+
+
+def _wanted(topics: Mapping[str, str], settings: Settings, known: Known) -> tuple[str, ...]:
+    """The scan topics to look at, if any are named; of those read before, a scanner may be silent now."""
+    read_before = () if known.selection is None else known.selection.scan_topics
+    return tuple(topic for topic in read_before if topic in topics) or settings.input.scan_topics
 
 
 def _no_scans(recordings: Sequence[Recording], candidates: Sequence[str]) -> UsageError:
@@ -112,7 +120,10 @@ def survey_sample(
     """The same, from a sample that was taken before."""
     seen = what_is_seen(recordings, sample, topics_of(recordings))
     poses = SampledPoses(sample)
-    selection = select(seen, candidates, settings.input, poses.are_known_somewhere)
+    if known.selection is None:
+        selection = select(seen, candidates, settings.input, poses.are_known_somewhere)
+    else:
+        selection = gone_on_with(known.selection, seen)
     chosen = {key: scans for key, scans in sample.scans.items() if key[1] in selection.scan_topics}
     beams = {key: settle(scans) for key, scans in chosen.items()}
     counts = _counts(chosen, beams)
