@@ -14,7 +14,7 @@ from rosbags.rosbag1 import Writer as BagWriter
 from sample_logs.laser import Mount
 from tests.cases.test_untrusted_poses import resetting
 from tests.conftest import ROOT, shared_data
-from tests.logs.recorded import START_NS, write_mcap
+from tests.logs.recorded import START_NS, Message, write_mcap
 from tests.simulated import in_order, moving, scanner, scans, stamp, static
 from tests.test_replay import standing_log
 from timemap_cli.config import load
@@ -198,6 +198,21 @@ def test_what_is_known_already_is_refused_and_may_be_cut_off(tmp_path):
     assert begin == "2023-11-14T22:13:50Z"
     two = replay([log], tmp_path / "two.timemap.mcap", SETTINGS, resume=one, start=begin).result
     assert_same_end(two, replay([log], tmp_path / "whole.timemap.mcap", SETTINGS).result)
+
+
+@pytest.mark.parametrize("cut", ["+4s", "+24s"])
+def test_two_drives_cut_anywhere_go_on_with_the_rest_of_both(tmp_path, cut):
+    """Within the first, and within the second, for which the laser was mounted elsewhere."""
+    lasers = scanner(**SMALL), scanner(Mount(-0.2, 0, 0.2, 90.0), **SMALL)
+    logs = []
+    for made, begin, end in zip(lasers, (0, 19), (8, 32), strict=True):
+        parts = [m for m in in_order(moving(), scans(made)) if stamp(begin) <= m.log_ns < stamp(end)]
+        mount = Message("/tf_static", stamp(begin), static((made, "laser")).content)
+        logs.append(write_mcap(tmp_path / f"{begin}.mcap", [mount, *parts]))
+    settings = load(None, {"input": {"no_return": "ignore"}})
+    one = replay(logs, tmp_path / "one.timemap.mcap", settings, end=cut).result
+    two = replay(logs, tmp_path / "two.timemap.mcap", settings, start=cut, resume=one).result
+    assert_same_end(two, in_one_go(tmp_path, logs, settings))
 
 
 def test_given_nodes_stay_all_there_are(tmp_path):

@@ -152,8 +152,8 @@ def _share_done(plan: Survey, now_ns: int | None) -> float:
     """Share of the recordings' time that is over now."""
     if now_ns is None:
         return 0.0
-    done = sum(min(max(now_ns, begin_ns), end_ns) - begin_ns for begin_ns, end_ns in plan.spans_ns)
-    return done / max(1, sum(end_ns - begin_ns for begin_ns, end_ns in plan.spans_ns))
+    done = sum(min(max(now_ns, begin_ns), end_ns) - begin_ns for begin_ns, end_ns in plan.spans_ns.values())
+    return done / max(1, sum(end_ns - begin_ns for begin_ns, end_ns in plan.spans_ns.values()))
 
 
 def _summary(

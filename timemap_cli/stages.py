@@ -77,7 +77,7 @@ class Observing:
             counts,
             start_ns=start_ns,
             end_ns=end_ns,
-            drives=plan.drives,
+            drives=plan.drives_within(None if self._earlier is None else start_ns, end_ns),
             latest_ns=plan.latest_ns,
             limits=plan.pose_limits,
             earlier=None if self._earlier is None else without_prefix("stream", self._earlier),

@@ -107,7 +107,8 @@ class DriveStream:
         """What waits, and what it needs to come out, for another drive that goes on."""
         return {
             "frames": list(self._frame_codes),
-            "ends_ns": [over_ns for over_ns, _ in self._ends],
+            # One that goes on behind the span is read once more.
+            "ends_ns": [over_ns for over_ns, _ in self._ends if over_ns < self._end_ns],
             "scan_log_ns": self._scan_log_ns,
             "log_end_ns": self._log_end_ns,
             **prefixed("window", self._window.kept()),
