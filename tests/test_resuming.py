@@ -155,6 +155,7 @@ def test_settings_that_differ_are_refused_by_name(tmp_path):
         ({"map": {"radius": 5}}, "map.radius 5.0 instead of 10.0"),
         ({"levels": levels}, "levels.long.window none instead of 100"),
         ({"input": {"no_return": "ignore"}}, "input.no_return ignore instead of auto"),
+        ({"input": {"scan_topics": ["/front"]}}, r"input.scan_topics \[/front\] instead of \[/scan\]"),
     ]:
         with pytest.raises(UsageError, match=said):
             replay([log], tmp_path / "two.timemap.mcap", load(None, overrides), resume=one)

@@ -86,7 +86,7 @@ class Earlier:
         """UsageError for settings that differ from the earlier replay's, by name."""
         other = differing(settings, self.settings)
         as_chosen = differing(settings, self.to_read_by)
-        found = [text for name, text in other.items() if name in as_chosen and name not in _MAY_DIFFER]
+        found = [as_chosen[name] for name in other if name in as_chosen and name not in _MAY_DIFFER]
         if found:
             raise UsageError(
                 f"the settings differ from those of {self.path}: {', '.join(found)}",
