@@ -11,7 +11,11 @@ from mcap.writer import Writer as McapWriter
 from rosbags.rosbag1 import Reader as BagReader
 from rosbags.rosbag1 import Writer as BagWriter
 
+from sample_logs.laser import Mount
+from tests.cases.test_untrusted_poses import resetting
 from tests.conftest import ROOT, shared_data
+from tests.logs.recorded import START_NS, Message, write_mcap
+from tests.simulated import in_order, moving, scanner, scans, stamp, static
 from tests.test_replay import standing_log
 from timemap_cli.config import load
 from timemap_cli.errors import TimemapError, UsageError
@@ -26,6 +30,7 @@ from timemap_cli.resuming import Earlier
 SETTINGS = load(None)
 SAMPLES = [ROOT / "sample_logs" / n for n in ("patrol_monday.mcap", "patrol_tuesday.bag", "patrol_thursday")]
 DAY_NS = 86_400_000_000_000
+SMALL = {"step_deg": 12.0, "beams": 30}
 
 
 def one_after_the_other(tmp_path, logs, settings=SETTINGS):
@@ -150,6 +155,7 @@ def test_settings_that_differ_are_refused_by_name(tmp_path):
         ({"map": {"radius": 5}}, "map.radius 5.0 instead of 10.0"),
         ({"levels": levels}, "levels.long.window none instead of 100"),
         ({"input": {"no_return": "ignore"}}, "input.no_return ignore instead of auto"),
+        ({"input": {"scan_topics": ["/front"]}}, r"input.scan_topics \[/front\] instead of \[/scan\]"),
     ]:
         with pytest.raises(UsageError, match=said):
             replay([log], tmp_path / "two.timemap.mcap", load(None, overrides), resume=one)
@@ -195,6 +201,21 @@ def test_what_is_known_already_is_refused_and_may_be_cut_off(tmp_path):
     assert_same_end(two, replay([log], tmp_path / "whole.timemap.mcap", SETTINGS).result)
 
 
+@pytest.mark.parametrize("cut", ["+4s", "+24s"])
+def test_two_drives_cut_anywhere_go_on_with_the_rest_of_both(tmp_path, cut):
+    """Within the first, and within the second, for which the laser was mounted elsewhere."""
+    lasers = scanner(**SMALL), scanner(Mount(-0.2, 0, 0.2, 90.0), **SMALL)
+    logs = []
+    for made, begin, end in zip(lasers, (0, 19), (8, 32), strict=True):
+        parts = [m for m in in_order(moving(), scans(made)) if stamp(begin) <= m.log_ns < stamp(end)]
+        mount = Message("/tf_static", stamp(begin), static((made, "laser")).content)
+        logs.append(write_mcap(tmp_path / f"{begin}.mcap", [mount, *parts]))
+    settings = load(None, {"input": {"no_return": "ignore"}})
+    one = replay(logs, tmp_path / "one.timemap.mcap", settings, end=cut).result
+    two = replay(logs, tmp_path / "two.timemap.mcap", settings, start=cut, resume=one).result
+    assert_same_end(two, in_one_go(tmp_path, logs, settings))
+
+
 def test_given_nodes_stay_all_there_are(tmp_path):
     places = tmp_path / "nodes.csv"
     places.write_text("2 2\n8 2\n5 5\n")
@@ -203,6 +224,73 @@ def test_given_nodes_stay_all_there_are(tmp_path):
     whole = replay(SAMPLES[:2], tmp_path / "whole.timemap.mcap", SETTINGS, nodes=places).result
     assert_same_end(two, whole)
     assert len(end_of(two)[0]) == 3
+
+
+def test_a_scanner_may_be_silent_on_a_later_day(tmp_path):
+    front, rear = scanner(Mount(0.3, 0, 0.2, 0.0), **SMALL), scanner(Mount(-0.3, 0, 0.2, 180.0), **SMALL)
+    both = scans(front, "/front", "front"), scans(rear, "/rear", "rear", begin=0.55)
+    messages = in_order([static((front, "front"), (rear, "rear"))], moving(), *both)
+    begun = [one for one in messages if one.log_ns < stamp(8)]
+    heard = [one for one in begun if one.topic != "/rear" or not stamp(3) < one.log_ns < stamp(6)]
+    settings = load(None, {"input": {"scan_topics": ["/front", "/rear"]}})
+    parts = cut_messages(heard, tmp_path, [3.5, 5.5])
+    assert_same_end(one_after_the_other(tmp_path, parts, settings), in_one_go(tmp_path, parts, settings))
+
+
+def test_three_cuts_around_a_jump_leave_out_the_same_scans_though_one_part_has_no_map_frame(tmp_path):
+    """Corrections come every 0.25 s: the third part has none, and the fourth goes on with those of the second."""
+    laser = scanner(**SMALL)
+    messages = in_order([static((laser, "laser"))], resetting(11.3, 0.7), scans(laser))
+    parts = cut_messages(messages, tmp_path, [11.1, 11.38, 11.5])
+    whole = replay(parts, tmp_path / "whole.timemap.mcap", SETTINGS)
+    assert whole.dropped["pose_jump"] > 0
+    assert_same_end(one_after_the_other(tmp_path, parts), whole.result)
+
+
+def test_nodes_that_are_new_on_the_second_day_are_counted_at_its_first_estimates(tmp_path):
+    laser, settings = scanner(**SMALL), load(None, {"estimate": {"every": "10000obs"}})
+    messages = in_order([static((laser, "laser"))], moving(), scans(laser))
+    one, _, two = cut_messages(messages, tmp_path, [8, 19])
+    assert_same_end(
+        one_after_the_other(tmp_path, [one, two], settings), in_one_go(tmp_path, [one, two], settings)
+    )
+
+
+def test_a_day_that_renews_no_estimate_has_the_maps_of_the_day_before(tmp_path):
+    levels = [{"name": n, "window": 3, "half_life": f"{h}obs"} for n, h in (("a", 40), ("b", 400))]
+    days = [
+        standing_log(tmp_path / f"{day}.mcap", n, START_NS + day * DAY_NS) for day, n in ((0, 200), (1, 1))
+    ]
+    settings = load(None, {"levels": levels})
+    resumed = one_after_the_other(tmp_path, days, settings)
+    assert_same_end(resumed, in_one_go(tmp_path, days, settings))
+    with ResultFile(resumed) as file:
+        assert file.last_message(LevelTopic.MAP.of("a")) is not None
+
+
+def test_a_day_without_the_frame_of_the_map_is_refused_and_leaves_nothing(tmp_path):
+    one = replay([standing_log(tmp_path / "a.mcap")], tmp_path / "one.timemap.mcap", SETTINGS).result
+    odometry = standing_log(tmp_path / "b.mcap", start_ns=START_NS + DAY_NS, world="odom")
+    with pytest.raises(TimemapError, match="no scan could be used: no_pose 100") as raised:
+        replay([odometry], tmp_path / "two.timemap.mcap", SETTINGS, resume=one)
+    assert raised.value.hint == f"{odometry} has no poses in 'map' for /scan"
+    assert not (tmp_path / "two.timemap.mcap").exists()
+
+
+def test_an_earlier_day_is_refused_also_where_the_last_recording_had_no_scans(tmp_path):
+    log, later = (standing_log(tmp_path / f"{d}.mcap", start_ns=START_NS + d * DAY_NS) for d in (0, 1))
+    silent = copied(later, tmp_path / "silent.mcap", lambda topic, _: topic != "/scan")
+    with pytest.raises(UsageError, match="no laser scans in"):
+        replay(
+            [silent],
+            tmp_path / "two.timemap.mcap",
+            SETTINGS,
+            resume=replay([log], tmp_path / "o", SETTINGS).result,
+        )
+    one = replay([log, silent], tmp_path / "one.timemap.mcap", SETTINGS).result
+    earlier = standing_log(tmp_path / "earlier.mcap", start_ns=START_NS - DAY_NS)
+    with pytest.raises(UsageError, match=r"before .*one\.timemap\.mcap ends \(2023-11-14T22:13:29\.9Z\)"):
+        replay([earlier], tmp_path / "two.timemap.mcap", SETTINGS, resume=one)
 
 
 def test_a_recording_or_nothing_cannot_be_resumed(tmp_path):
@@ -220,6 +308,15 @@ def test_every_part_of_the_state_stands_once_and_nodes_one_by_one(tmp_path):
         nodes = [(Part.NODE, number) for number in range(len(reader.nodes))]
         assert parts == [(Part.READING, 0), (Part.LEARNING, 0), (Part.CHANGES, 0), *nodes]
         assert reader.count(channels.STATE_TOPIC) == len(parts)
+
+
+def cut_messages(messages, folder, cuts):
+    """Recordings of messages, cut at so many seconds."""
+    times = [0, *map(stamp, cuts), 2**62]
+    return [
+        write_mcap(folder / f"part{i}.mcap", [one for one in messages if begin <= one.log_ns < end])
+        for i, (begin, end) in enumerate(pairwise(times))
+    ]
 
 
 def borders(start_ns, end_ns, cuts):

@@ -152,8 +152,8 @@ def _share_done(plan: Survey, now_ns: int | None) -> float:
     """Share of the recordings' time that is over now."""
     if now_ns is None:
         return 0.0
-    done = sum(min(max(now_ns, begin_ns), end_ns) - begin_ns for begin_ns, end_ns in plan.spans_ns)
-    return done / max(1, sum(end_ns - begin_ns for begin_ns, end_ns in plan.spans_ns))
+    done = sum(min(max(now_ns, begin_ns), end_ns) - begin_ns for begin_ns, end_ns in plan.spans_ns.values())
+    return done / max(1, sum(end_ns - begin_ns for begin_ns, end_ns in plan.spans_ns.values()))
 
 
 def _summary(
@@ -210,7 +210,9 @@ def _require_some_use(
             f"{message} (--nodes {nodes}: none is near enough)",
             hint=f"nodes where the robot drives, in metres of the frame {frame!r}",
         )
-    raise TimemapError(message, hint="timemap info LOG... tells what the recordings hold")
+    raise TimemapError(
+        message, hint="; ".join(plan.problems) or "timemap info LOG... tells what the recordings hold"
+    )
 
 
 def _other_warnings(observing: Observing, writing: Writing) -> Iterator[str]:

@@ -9,6 +9,7 @@ from timemap_cli.config import Settings, loads
 from timemap_cli.errors import TimemapError, UsageError
 from timemap_cli.logs.missing_returns import MissingReturns
 from timemap_cli.logs.scan_window import WINDOW_NS
+from timemap_cli.logs.selection import Selection
 from timemap_cli.logs.static_transforms import StaticTransforms
 from timemap_cli.logs.survey import Known
 from timemap_cli.model.learner import Kept
@@ -47,9 +48,9 @@ class Earlier:
             nodes = tuple(Node(x, y) for x, y in reading["observer.nodes"].tolist())
             found = {topic: MissingReturns(*one) for topic, one in reading["missing_so_far"].items()}
             static = StaticTransforms.of((), without_prefix("stream.static", reading))
-            return cls(
-                path, settings, reading, nodes, Known(static.earlier, found), _chosen(settings, reading)
-            )
+            chosen = _chosen(reading["selection"])
+            known = Known(static.earlier, found, chosen)
+            return cls(path, settings, reading, nodes, known, _read_by(settings, chosen))
 
     def damage_told(self) -> AbstractContextManager[None]:
         """Inside it, what comes of parts that do not fit together is a TimemapError.
@@ -71,7 +72,10 @@ class Earlier:
 
     def require_before(self, begin_ns: int) -> None:
         """UsageError for scans that begin earlier than this result ends, by more than may come out of order."""
-        end_ns = self.reading["stream.window.clock_ns"]
+        clock_ns, newest_ns = self.reading["stream.window.clock_ns"], self.reading["newest_ns"]
+        end_ns = (
+            newest_ns if clock_ns < 0 and newest_ns is not None else clock_ns
+        )  # a last drive without scans
         if begin_ns < end_ns - WINDOW_NS:
             raise UsageError(
                 f"the recordings begin at {format_time(begin_ns)}, before {self.path} ends ({format_time(end_ns)})",
@@ -82,7 +86,7 @@ class Earlier:
         """UsageError for settings that differ from the earlier replay's, by name."""
         other = differing(settings, self.settings)
         as_chosen = differing(settings, self.to_read_by)
-        found = [text for name, text in other.items() if name in as_chosen and name not in _MAY_DIFFER]
+        found = [as_chosen[name] for name in other if name in as_chosen and name not in _MAY_DIFFER]
         if found:
             raise UsageError(
                 f"the settings differ from those of {self.path}: {', '.join(found)}",
@@ -90,13 +94,17 @@ class Earlier:
             )
 
 
-def _chosen(settings: Settings, reading: State) -> Settings:
-    chosen = reading["selection"]
+def _chosen(kept: State) -> Selection:
+    topics = tuple(kept["scan_topics"])
+    return Selection(topics, kept["map_frame"], kept["pose"], covariances=kept["covariances"])
+
+
+def _read_by(settings: Settings, chosen: Selection) -> Settings:
     wanted = replace(
         settings.input,
-        scan_topics=tuple(chosen["scan_topics"]),
-        map_frame=chosen["map_frame"],
-        poses=chosen["poses"],
+        scan_topics=chosen.scan_topics,
+        map_frame=chosen.map_frame,
+        poses=chosen.pose,
     )
     return replace(settings, input=wanted)
 

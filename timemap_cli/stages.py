@@ -77,7 +77,7 @@ class Observing:
             counts,
             start_ns=start_ns,
             end_ns=end_ns,
-            drives=plan.drives,
+            drives=plan.drives_within(None if self._earlier is None else start_ns, end_ns),
             latest_ns=plan.latest_ns,
             limits=plan.pose_limits,
             earlier=None if self._earlier is None else without_prefix("stream", self._earlier),
@@ -110,7 +110,12 @@ class Observing:
 
     def _kept(self) -> State:
         chosen = self._plan.selection
-        selection = {"scan_topics": chosen.scan_topics, "map_frame": chosen.map_frame, "poses": chosen.pose}
+        selection = {
+            "scan_topics": chosen.scan_topics,
+            "map_frame": chosen.map_frame,
+            "pose": chosen.pose,
+            "covariances": chosen.covariances,
+        }
         observer = prefixed("observer", self._observer.kept())
         return {
             "newest_ns": self.newest_ns,
@@ -144,6 +149,7 @@ class Writing:
         self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in tracker.levels}
         self._newest_ns = self._kept_ns = 0
         self._maps_are_due = False
+        self._maps_are_missing = False  # an earlier result had them, and this one has none
         self._is_new = True  # what comes; else an earlier result has it
         self._is_known_to_all = True  # what an earlier result had stands in this one
 
@@ -173,10 +179,10 @@ class Writing:
         self.shortfalls = learnt.shortfalls
         for made in learnt.rounds:
             self._follow(made, all_nodes[: made.nodes])
-        if learnt.mark is Mark.RECORDING_ENDS and self._maps_are_due:  # recordings may end together
+        if learnt.mark is Mark.RECORDING_ENDS and (self._maps_are_due or self._maps_are_missing):
             if self._is_new:
                 self._result.write_maps(self._latest, self.nodes, self._newest_ns)
-            self._maps_are_due = False
+            self._maps_are_due = self._maps_are_missing = False  # recordings may end together
         self._is_new |= learnt.mark is Mark.RESUMED
 
     def keep(self, kept: Kept, reading: State) -> None:
@@ -218,11 +224,10 @@ class Writing:
                 latest[kept.node] = Estimate.restored(kept.node, level, state)
 
     def _follow(self, made: Round, nodes: Sequence[Node]) -> None:
-        self.nodes = nodes
-        if made.estimates:
-            self._newest_ns = made.newest_ns
         if self._is_new:
-            self._write(made)
+            self._write(made, nodes)
+        if made.estimates:
+            self.nodes, self._newest_ns = nodes, made.newest_ns
         for estimate in made.estimates:
             self._latest[estimate.level][estimate.node] = estimate
             self._maps_are_due = True
@@ -230,12 +235,12 @@ class Writing:
         if found and self._is_new:
             self._result.write_changes(found, self.tracker.events, made.newest_ns)
 
-    def _write(self, made: Round) -> None:
+    def _write(self, made: Round, nodes: Sequence[Node]) -> None:
         if not self._is_known_to_all:
             known = [estimate for latest in self._latest.values() for estimate in latest.values()]
             self._result.write_known(self.nodes, known, made.newest_ns)
             if self.tracker.events:
                 self._result.write_changes([], self.tracker.events, made.newest_ns)
-            self._is_known_to_all = True
-        self._result.write_nodes(self.nodes, made.newest_ns)
+            self._is_known_to_all = self._maps_are_missing = True
+        self._result.write_nodes(nodes, made.newest_ns)
         self._result.write_estimates(made.estimates, made.newest_ns)

@@ -55,6 +55,13 @@ def told(out):
     return rows
 
 
+def plain(state):
+    """A state in a form that can be compared, to the bit."""
+    return {
+        name: value.tobytes() if isinstance(value, np.ndarray) else value for name, value in state.items()
+    }
+
+
 def before_the_end(out):
     """What had come out when all had been read."""
     return told(out[: next(i for i, one in enumerate(out) if isinstance(one, Waiting))])
@@ -92,6 +99,7 @@ def assert_resumed_is_continuous(recordings, **options):
         state = kept(new)
     out += told(new[next(i for i, one in enumerate(new) if isinstance(one, Waiting)) :])
     assert out == told(whole)
+    assert plain(state) == plain(kept(whole))
 
 
 @settings(max_examples=25)
@@ -129,6 +137,25 @@ def test_a_mount_that_a_later_recording_tells_anew_holds_for_its_own_drive_only(
     recordings = [
         FakeRecording([[*static, driving(day), scans(day, topic="/front")]])
         for static, day in zip(statics, days, strict=True)
+    ]
+    assert_resumed_is_continuous(recordings)
+
+
+def test_a_scanner_that_is_silent_for_more_than_a_minute_over_the_cut_is_silent_in_both():
+    seconds, later = np.arange(0, 20, 0.5), np.arange(82, 130, 0.5)
+    first = [[MOUNT, driving(seconds), scans(seconds, topic="/front")], [driving(np.arange(20, 75, 0.5))]]
+    second = [[driving(later), scans(later, topic="/front")]]
+    assert_resumed_is_continuous([FakeRecording(first), FakeRecording(second)])
+
+
+def test_frames_told_in_another_order_make_no_other_state():
+    camera = tf("head", "camera", [0], [[0.0, 0, 1]], static=True)
+    recordings = [
+        FakeRecording([[*static, driving(day), scans(day, topic="/front")]])
+        for static, day in (
+            ([MOUNT, camera], np.arange(0, 20, 0.5)),
+            ([camera, MOUNT], np.arange(20, 40, 0.5)),
+        )
     ]
     assert_resumed_is_continuous(recordings)
 

@@ -138,3 +138,9 @@ def test_the_guard_remembers_from_block_to_block(size):
     parts = [other.believed(seen(slice(i, i + size))) for i in range(0, 400, size)]
     assert np.concatenate(parts).tolist() == whole
     assert 50 < sum(whole) < 350
+
+
+def test_nothing_is_kept_of_a_node_that_was_never_estimated_however_much_room_there_is():
+    judge = guard()
+    judge.expect([estimate(HELD, node=9)])
+    assert [judge.kept(node) == {} for node in (0, 1, 8, 9, 10)] == [False, True, True, False, True]

@@ -212,3 +212,15 @@ def test_a_recalled_memory_is_a_copy():
     before = recalled(memory)
     memory.remember(np.zeros(3, np.int64), np.arange(3), codes(np.full((3, 3), 9.0)))
     assert samples(before, 0) == [1000]
+
+
+def test_what_is_kept_of_all_nodes_is_the_same_to_the_bit_however_scans_come_in_blocks():
+    stamps_ns, ranges = np.arange(300) * 137_000_011, np.full((300, 4), 1000, np.uint16)
+    kept = []
+    for cuts in ([], [150], [7, 8, 100], range(1, 300)):
+        memory = Memory(Level("slow", 7, 0.9, in_seconds=True), 4, 0)
+        memory.add_nodes([NODE])
+        for part in np.split(np.arange(300), cuts):
+            memory.remember(np.zeros(len(part), np.int64), stamps_ns[part], ranges[part])
+        kept.append(memory.kept_of_all())
+    assert all(one == kept[0] for one in kept)

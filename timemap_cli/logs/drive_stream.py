@@ -71,6 +71,7 @@ class DriveStream:
         self._ended: set[int] = set()
         self._group: Sequence[int] = ()
         self._scan_log_ns = self._log_end_ns = BEGINNING_NS
+        self._goes_on = earlier is not None
         if earlier is not None:
             self._restore(earlier)
 
@@ -80,6 +81,8 @@ class DriveStream:
         if self._scan_log_ns == BEGINNING_NS:
             self._scan_log_ns = self._recordings[group[0]].start_ns
         self._log_end_ns = max(self._log_end_ns, *(self._recordings[index].end_ns for index in group))
+        if self._goes_on:  # as where the next recording's turn comes, before anything of it is read
+            yield from self._let_out(self._recordings[group[0]].start_ns)
         topics = {index: self._topics(index) for index in group}
         for index, batches, until_ns in interleaved(self._recordings, topics, group):
             if batches is None:
@@ -104,7 +107,8 @@ class DriveStream:
         """What waits, and what it needs to come out, for another drive that goes on."""
         return {
             "frames": list(self._frame_codes),
-            "ends_ns": [over_ns for over_ns, _ in self._ends],
+            # One that goes on behind the span is read once more.
+            "ends_ns": [over_ns for over_ns, _ in self._ends if over_ns < self._end_ns],
             "scan_log_ns": self._scan_log_ns,
             "log_end_ns": self._log_end_ns,
             **prefixed("window", self._window.kept()),

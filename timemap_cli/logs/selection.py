@@ -1,7 +1,7 @@
 """Which scan topics, map frame and poses a replay uses, and what to say where that is not clear."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 from timemap_cli.config import InputSettings
@@ -136,6 +136,16 @@ def select(
     warning = f"using {topic}, the only scan topic with poses (not {others})"
     warnings = (warning, *choice.warnings)
     return Selection((topic,), choice.map_frame, choice.pose, warnings, choice.covariances)
+
+
+def gone_on_with(earlier: Selection, seen: Seen) -> Selection:
+    """What an earlier replay chose, whatever these recordings hold: a frame of their own would be another map.
+
+    Who tells how uncertain the poses are may be new.
+    """
+    if earlier.pose != TF or earlier.covariances is not None:
+        return earlier
+    return replace(earlier, covariances=_localiser(seen, earlier.map_frame))
 
 
 def choose_poses(

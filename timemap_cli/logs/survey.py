@@ -26,6 +26,7 @@ from timemap_cli.logs.selection import (
     PoseTopic,
     Seen,
     Selection,
+    gone_on_with,
     scan_candidates,
     select,
 )
@@ -44,9 +45,9 @@ class Survey:
     missing_returns: Mapping[tuple[int, str], MissingReturns]  # by the same; empty where not tested
     missing_so_far: Mapping[str, MissingReturns]  # by scan topic: over these recordings and all before them
     problems: tuple[str, ...]
-    spans_ns: tuple[
-        tuple[int, int], ...
-    ]  # begin and end of each recording that has scans, in time of their stamps
+    spans_ns: Mapping[
+        int, tuple[int, int]
+    ]  # index of the recording, if it has scans -> begin and end by their stamps
     drives: tuple[Drive, ...]  # recordings that are merged and share their transforms
     latest_ns: Mapping[int, int]  # index of the recording -> stamp beyond which no scan of it can be
     pose_limits: PoseLimits  # how good a scan's pose must be
@@ -54,7 +55,22 @@ class Survey:
     @property
     def span_ns(self) -> tuple[int, int]:
         """Begin of the first and end of the last recording, in time of the scans' stamps."""
-        return min(begin for begin, _ in self.spans_ns), max(end for _, end in self.spans_ns)
+        spans = self.spans_ns.values()
+        return min(begin for begin, _ in spans), max(end for _, end in spans)
+
+    def drives_within(self, start_ns: int | None, end_ns: int | None) -> tuple[Drive, ...]:
+        """Drives without those that end well before a stamp, or begin at another or after it; all if none is left."""
+        if start_ns is None and end_ns is None:
+            return self.drives
+        from_ns = -math.inf if start_ns is None else start_ns - WINDOW_NS
+        until_ns = math.inf if end_ns is None else end_ns
+        spans = {drive: [self.spans_ns[i] for i in drive if i in self.spans_ns] for drive in self.drives}
+        within = (
+            drive
+            for drive, found in spans.items()
+            if any(end >= from_ns and begin < until_ns for begin, end in found)
+        )
+        return tuple(within) or self.drives
 
     @property
     def no_return(self) -> str:
@@ -74,6 +90,7 @@ class Known:
 
     static_transforms: tuple[TransformBatch, ...] = ()  # those that hold, if these recordings have none
     missing_so_far: Mapping[str, MissingReturns] = field(default_factory=dict)  # as in Survey
+    selection: Selection | None = None  # what was read of them, which not all of these recordings may hold
 
 
 NOTHING_KNOWN = Known()
@@ -86,7 +103,7 @@ def survey(recordings: Sequence[Recording], settings: Settings, known: Known = N
     """
     topics = topics_of(recordings)
     try:
-        candidates = scan_candidates(names_of(recordings), topics, settings.input.scan_topics)
+        candidates = scan_candidates(names_of(recordings), topics, _wanted(topics, settings, known))
         sample = take_sample(recordings, candidates)
         if not sample.scans:
             raise _no_scans(recordings, candidates)
@@ -94,6 +111,12 @@ def survey(recordings: Sequence[Recording], settings: Settings, known: Known = N
         return survey_sample(recordings, sample, candidates, settings, known)
     except UsageError as error:
         raise _with_damage(error, recordings) from error
+
+
+def _wanted(topics: Mapping[str, str], settings: Settings, known: Known) -> tuple[str, ...]:
+    """The scan topics to look at, if any are named; of those read before, a scanner may be silent now."""
+    read_before = () if known.selection is None else known.selection.scan_topics
+    return tuple(topic for topic in read_before if topic in topics) or settings.input.scan_topics
 
 
 def _no_scans(recordings: Sequence[Recording], candidates: Sequence[str]) -> UsageError:
@@ -112,7 +135,10 @@ def survey_sample(
     """The same, from a sample that was taken before."""
     seen = what_is_seen(recordings, sample, topics_of(recordings))
     poses = SampledPoses(sample)
-    selection = select(seen, candidates, settings.input, poses.are_known_somewhere)
+    if known.selection is None:
+        selection = select(seen, candidates, settings.input, poses.are_known_somewhere)
+    else:
+        selection = gone_on_with(known.selection, seen)
     chosen = {key: scans for key, scans in sample.scans.items() if key[1] in selection.scan_topics}
     beams = {key: settle(scans) for key, scans in chosen.items()}
     counts = _counts(chosen, beams)
@@ -176,9 +202,9 @@ def what_is_seen(recordings: Sequence[Recording], sample: Sample, topics: Mappin
 
 def _spans_ns(
     recordings: Sequence[Recording], sample: Sample, selection: Selection
-) -> tuple[tuple[int, int], ...]:
+) -> dict[int, tuple[int, int]]:
     """Log times of the recordings' ends as stamps: what was logged elsewhere may have been logged at another time."""
-    found = []
+    found = {}
     for index, recording in enumerate(recordings):
         batches = [b for topic in selection.scan_topics for b in sample.scans.get((index, topic), ())]
         if batches:
@@ -187,8 +213,8 @@ def _spans_ns(
             first, last = int(log_ns.argmin()), int(log_ns.argmax())
             begin_ns = recording.start_ns + int(stamps_ns[first] - log_ns[first])
             end_ns = recording.end_ns + int(stamps_ns[last] - log_ns[last])
-            found.append((begin_ns, max(begin_ns, end_ns)))
-    return tuple(found)
+            found[index] = begin_ns, max(begin_ns, end_ns)
+    return found
 
 
 def _latest_ns(count: int, sample: Sample, selection: Selection) -> dict[int, int]:

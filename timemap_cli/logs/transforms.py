@@ -103,16 +103,22 @@ class TransformBuffer:
 
     def kept(self) -> State:
         """The moving transforms, for `restore`."""
-        state: State = {"names": self._names, "moving": list(self._moving)}
+        state: State = {"moving": list(self._moving)}
         for number, history in enumerate(self._moving.values()):
-            state |= prefixed(str(number), history.kept())
+            kept = history.kept()
+            # Codes are this buffer's alone: they go by what else it has met.
+            used = sorted(np.unique(kept["parent"]).tolist(), key=self.name)
+            places = np.zeros(len(self._names), np.int32)
+            places[used] = np.arange(len(used))
+            parents = {"parents": list(map(self.name, used)), "parent": places[kept["parent"]]}
+            state |= prefixed(str(number), kept | parents)
         return state
 
     def restore(self, state: State) -> None:
         """Take over the moving transforms that another buffer kept; this one must have none."""
-        codes = np.array([self._code(name) for name in state["names"]], np.int32)
         for number, child in enumerate(state["moving"]):
             kept = without_prefix(str(number), state)
+            codes = np.array([self._code(name) for name in kept["parents"]], np.int32)
             self._moving[child] = History.restored(kept | {"parent": codes[kept["parent"]]})
 
     def forget(self, before_ns: int) -> None:

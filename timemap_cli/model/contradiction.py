@@ -53,6 +53,10 @@ class Bounds:
         """Copy of these rows."""
         return Bounds(self.low[rows], self.width[rows])
 
+    def say_something(self, row: int) -> bool:
+        """Whether a virtual scan can contradict this row."""
+        return bool((self.width[row] != _ANYTHING).any())
+
     def with_rows(self, rows: Ints, other: "Bounds") -> "Bounds":
         """These bounds with others in the place of some rows; changes them, and makes room for new rows."""
         low, width = self.low, self.width

@@ -74,7 +74,7 @@ class Draw:
         self._next = np.zeros(0, np.int64)  # first turn in which no scan was taken yet
         self._stamp = np.zeros(0, np.int64)  # [ns] the newest scan that reached the level
         self._owed = np.zeros(0)  # places due for time gone by, which the next scans are to fill
-        self._wanted = self._granted = 0.0  # shares due in all, and those of them a scan can fill
+        self._wanted = self._granted = 0  # shares due in all, and those of them a scan can fill [2^-32]
 
     @property
     def shortfall(self) -> float:
@@ -109,7 +109,7 @@ class Draw:
 
     def restore_of_all(self, state: State) -> None:
         """Take over what another draw kept of no node alone."""
-        self._wanted, self._granted = float(state["wanted"]), float(state["granted"])
+        self._wanted, self._granted = int(state["wanted"]), int(state["granted"])
 
     def taken(self, groups: Groups, stamps_ns: Ints, keys: chance.Keys) -> npt.NDArray[np.bool_]:
         """Which scans (n,) the level takes; `stamps_ns` is in the groups' order, `keys` per node."""
@@ -137,9 +137,10 @@ class Draw:
         reached = groups.running_sums(np.ones(len(stamps_ns), np.int64), self._reached)
         due = self._due(groups, stamps_ns)
         granted = self._granted_to(groups, due)
-        all_due = groups.running_sums(np.asarray(np.rint(granted * _ONE), np.int64), self._all_due)
-        self._wanted += float(due.sum())
-        self._granted += float(granted.sum())
+        filled = np.asarray(np.rint(granted * _ONE), np.int64)
+        all_due = groups.running_sums(filled, self._all_due)
+        self._wanted += int(np.rint(due * _ONE).astype(np.int64).sum())
+        self._granted += int(filled.sum())
         window = self._level.window
         young = (reached <= window) | (all_due < window * _ONE)
         return np.asarray(

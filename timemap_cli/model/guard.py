@@ -79,7 +79,7 @@ class Guard:
     def kept(self, node: int) -> State:
         """What is expected of a node, and doubted, for `restore`."""
         state: State = {}
-        if node < len(self._expected):
+        if node < len(self._expected) and self._expected.say_something(node):
             state |= {"low": self._expected.low[node], "width": self._expected.width[node]}
         if (doubt := self._doubts.get(node)) is not None:
             state |= {"witness": doubt.witness, "since_ns": doubt.since_ns, "votes": doubt.votes}

@@ -115,9 +115,9 @@ class ResultWriter:
         now_ns = self._advance(stamp_ns)
         for level, by_node in estimates_by_level.items():
             estimates = dict(sorted(by_node.items()))  # not in the order in which they came first
-            points = pack_points(merged_points(nodes, estimates), now_ns, self._map_frame)
+            points = pack_points(merged_points(nodes, estimates), stamp_ns, self._map_frame)
             self._add_of_level(LevelTopic.POINTS, level, points, now_ns)
-            grid = pack_grid(occupancy_grid(nodes, estimates, self._radius), now_ns, self._map_frame)
+            grid = pack_grid(occupancy_grid(nodes, estimates, self._radius), stamp_ns, self._map_frame)
             self._add_of_level(LevelTopic.MAP, level, grid, now_ns)
 
     def write_changes(
