@@ -30,7 +30,7 @@ demo: $(VENV)/timemap.stamp
 	$(BIN)/timemap diff $(BUILD)/demo.timemap.mcap --level long mid
 
 test: $(VENV)/dev.stamp
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n auto --dist loadfile
 
 check: $(VENV)/dev.stamp
 	$(BIN)/ruff check .

@@ -96,10 +96,8 @@ def test_seconds_and_the_papers_profile_go_on_too(tmp_path):
             {"name": "slow", "window": 30, "half_life": "60s"},
         ],
     }
-    settings = load(None, overrides)
-    assert_same_end(
-        one_after_the_other(tmp_path, SAMPLES[:2], settings), in_one_go(tmp_path, SAMPLES[:2], settings)
-    )
+    settings, parts = load(None, overrides), cut_mcap(SAMPLES[0], tmp_path, [0.2, 0.4])[:2]
+    assert_same_end(one_after_the_other(tmp_path, parts, settings), in_one_go(tmp_path, parts, settings))
 
 
 def test_intel_cut_in_three_formats_is_intel_in_one_go(tmp_path):
@@ -219,9 +217,10 @@ def test_two_drives_cut_anywhere_go_on_with_the_rest_of_both(tmp_path, cut):
 def test_given_nodes_stay_all_there_are(tmp_path):
     places = tmp_path / "nodes.csv"
     places.write_text("2 2\n8 2\n5 5\n")
-    one = replay([SAMPLES[0]], tmp_path / "one.timemap.mcap", SETTINGS, nodes=places).result
-    two = replay([SAMPLES[1]], tmp_path / "two.timemap.mcap", SETTINGS, resume=one).result
-    whole = replay(SAMPLES[:2], tmp_path / "whole.timemap.mcap", SETTINGS, nodes=places).result
+    first, second, _ = cut_mcap(SAMPLES[0], tmp_path, [0.3, 0.6])
+    one = replay([first], tmp_path / "one.timemap.mcap", SETTINGS, nodes=places).result
+    two = replay([second], tmp_path / "two.timemap.mcap", SETTINGS, resume=one).result
+    whole = replay([first, second], tmp_path / "whole.timemap.mcap", SETTINGS, nodes=places).result
     assert_same_end(two, whole)
     assert len(end_of(two)[0]) == 3
 

@@ -43,6 +43,6 @@ def test_two_runs_give_the_same_bytes_with_one_process_or_two(tmp_path, monkeypa
     results = []
     for number in range(2):
         results.append(tmp_path / f"{number}.timemap.mcap")
-        replay([ROOT / log], results[-1], load(None))
+        replay([ROOT / log], results[-1], load(None), end="+150s")
         monkeypatch.setattr("timemap_cli.second_process._usable_processors", lambda: processors)
     assert results[0].read_bytes() == results[1].read_bytes()

@@ -110,8 +110,10 @@ def test_half_the_window_is_new_after_the_half_life_in_seconds(window, half_life
     assert WITHIN_TEN_PERCENT[0] < experiment.share_of_new() < WITHIN_TEN_PERCENT[1]
 
 
-@pytest.mark.parametrize("history", [3, 10])  # [half-lives]
-@pytest.mark.parametrize(("window", "half_life"), [(25, 64.0), (100, 320.0), (50, 640.0)])
+@pytest.mark.parametrize(
+    ("window", "half_life", "history"),  # history in half-lives
+    [(25, 64.0, 3), (25, 64.0, 10), (100, 320.0, 3), (50, 640.0, 3)],
+)
 def test_a_robot_that_passes_by_forgets_by_the_time_it_observed(window, half_life, history):
     """15 scans at 0.2 s, then 5 min away: 10 s and 14 times 0.2 s of observed time in each pass."""
     experiment = Experiment(Level("level", window, half_life, in_seconds=True), 1.0, 0.2)
