@@ -132,3 +132,14 @@ def test_importing_the_command_line_imports_no_numpy():
 def test_the_installed_command_is_this_program():
     (entry,) = entry_points(group="console_scripts", name="timemap")
     assert entry.value == "timemap_cli.cli.entry:run"
+
+
+def test_a_cut_file_of_the_program_itself_is_no_interrupt(monkeypatch):
+    def cut(*_args, **_more):
+        raise EOFError("marshal data too short")
+
+    monkeypatch.setattr("timemap_cli.config.dump", cut)
+    monkeypatch.setattr("timemap_cli.cli.config.dump", cut, raising=False)
+    ran = timemap("config")
+    assert ran.code == 1
+    assert "a file of the program itself ends too early: marshal data too short" in ran.err

@@ -37,8 +37,9 @@ def run(*args, limit=None, **more):
         if limit is not None:
             resource.setrlimit(limit[0], (limit[1], limit[1]))
 
+    # Python does not notice when its own compiled files are cut by a limit, and would load them ever after.
     return subprocess.run(
-        [sys.executable, "-m", "timemap_cli", *map(str, args)],
+        [sys.executable, "-B", "-m", "timemap_cli", *map(str, args)],
         capture_output=True,
         text=True,
         timeout=120,

@@ -51,7 +51,13 @@ def main(args: Sequence[str], terminal: Terminal | None = None) -> int:
     except MemoryError:
         terminal.error(TimemapError("there is not enough memory"))
         return ExitCode.FAILED
-    except (KeyboardInterrupt, click.Abort):
+    except (KeyboardInterrupt, click.Abort) as error:
+        if isinstance(error.__cause__, EOFError):  # click takes it for Ctrl-D at a prompt; there are none
+            hint = "install timemap anew: a full disk may have cut its compiled files"
+            terminal.error(
+                TimemapError(f"a file of the program itself ends too early: {error.__cause__}", hint=hint)
+            )
+            return ExitCode.FAILED
         terminal.note("interrupted")
         return ExitCode.INTERRUPTED
 
