@@ -7,14 +7,10 @@ from difflib import get_close_matches
 from timemap_cli.config import InputSettings
 from timemap_cli.errors import UsageError, as_word
 from timemap_cli.logs.frames import Frames
+from timemap_cli.logs.hints import family, instead, what_else, what_to_record
 from timemap_cli.logs.poses import TF
 
 SCAN_TYPE = "sensor_msgs/msg/LaserScan"
-CLOUD_TYPES = (
-    "sensor_msgs/msg/PointCloud2",
-    "sensor_msgs/msg/PointCloud",
-    "sensor_msgs/msg/MultiEchoLaserScan",
-)
 POSE_TYPES = (
     "geometry_msgs/msg/PoseWithCovarianceStamped",
     "geometry_msgs/msg/PoseStamped",
@@ -90,7 +86,7 @@ def scan_candidates(logs: Sequence[str], topics: Mapping[str, str], wanted: Sequ
     scans = tuple(sorted(topic for topic, msgtype in topics.items() if msgtype == SCAN_TYPE))
     where = ", ".join(logs) if len(logs) <= 3 else f"{len(logs)} recordings"
     if not scans:
-        raise UsageError(f"no laser scans in {where}: {_what_else(topics)}", hint=_instead(topics))
+        raise UsageError(f"no laser scans in {where}: {what_else(topics, SCAN_TYPE)}", hint=instead(topics))
     for topic in wanted:
         if topic not in topics:
             near = get_close_matches(topic, scans, 1) or scans
@@ -302,52 +298,6 @@ def _no_poses(
             hint="record /tf and /tf_static with the scans, or a pose topic such as /amcl_pose",
         )
     return UsageError(
-        f"no pose for {topic}: frame '{frame}' is not connected to {target} ({_family(seen.frames, frame)})",
-        hint=hint or _what_to_record(seen.frames, frame),
+        f"no pose for {topic}: frame '{frame}' is not connected to {target} ({family(seen.frames, frame)})",
+        hint=hint or what_to_record(seen.frames, frame),
     )
-
-
-def _what_to_record(frames: Frames, frame: str) -> str:
-    if frames and not frames.connected_to(frame) - {frame}:
-        return f"record /tf_static too; it must say where {frame!r} sits on the robot"
-    return "record the transforms from the map to the laser (/tf, /tf_static)"
-
-
-def _family(frames: Frames, frame: str) -> str:
-    """What a frame is connected to, in words."""
-    others = frames.connected_to(frame) - {frame}
-    if others:
-        return f"only to {_some(others)}"
-    rest = frames.names() - {frame}
-    if near := get_close_matches(frame, sorted(rest), 1):
-        return f"no transform names it, but there is '{near[0]}'"
-    return f"no transform names it; there are {_some(rest)}" if rest else "there are no transforms"
-
-
-def _some(names: Iterable[str]) -> str:
-    """A few of some frames, those first that one would look for."""
-
-    def rank(name: str) -> tuple[bool, str]:
-        return not any(word in name for word in ("map", "odom", "base_", "laser", "scan")), name
-
-    ordered = sorted(names, key=rank)
-    more = f" and {len(ordered) - 4} more" if len(ordered) > 4 else ""
-    return ", ".join(f"'{name}'" for name in ordered[:4]) + more
-
-
-def _what_else(topics: Mapping[str, str]) -> str:
-    names = sorted(topics)
-    more = f" and {len(names) - 6} more" if len(names) > 6 else ""
-    if not names:
-        return "there are no messages"
-    for name in names:
-        if topics[name].startswith(f"{SCAN_TYPE} in "):
-            return f"{name} holds {topics[name]}, which is not read"
-    return f"no topic of type {SCAN_TYPE} among {', '.join(names[:6])}{more}"
-
-
-def _instead(topics: Mapping[str, str]) -> str:
-    for topic in sorted(topics):
-        if topics[topic] in CLOUD_TYPES:
-            return f"turn {as_word(topic)} into laser scans first (pointcloud_to_laserscan)"
-    return "record the topic of the laser scanner together with /tf and /tf_static"

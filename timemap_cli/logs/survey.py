@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, pairwise
+from itertools import chain
 
 import numpy as np
 
@@ -13,10 +13,9 @@ from timemap_cli.logs.batches import PoseBatch, ScanBatch, TransformBatch
 from timemap_cli.logs.beams import BeamCounts, Beams, settle
 from timemap_cli.logs.drives import Drive
 from timemap_cli.logs.frames import Frames
-from timemap_cli.logs.interleave import joined
 from timemap_cli.logs.missing_returns import MissingReturns, examine
 from timemap_cli.logs.pose_quality import PoseLimits
-from timemap_cli.logs.poses import TF, PoseSource
+from timemap_cli.logs.poses import PoseSource
 from timemap_cli.logs.recordings import Recording
 from timemap_cli.logs.sampled_poses import SampledPoses
 from timemap_cli.logs.sampling import Sample, take_sample
@@ -30,6 +29,7 @@ from timemap_cli.logs.selection import (
     scan_candidates,
     select,
 )
+from timemap_cli.logs.shortcomings import carried, short_sighted, shortcomings
 from timemap_cli.model.sweeps import Sweeps
 
 DAY_NS = 86_400_000_000_000
@@ -156,9 +156,9 @@ def survey_sample(
         if not _are_clear(so_far.get(topic), settings.input):
             beams[index, topic] = beams[index, topic].ignoring_missing()
     problems = (
-        *_problems(recordings, sample, poses, selection),
-        *_carried(seen, sample, selection),
-        *_short_sighted(beams, settings),
+        *shortcomings(recordings, sample, poses, selection),
+        *carried(seen, sample, selection),
+        *short_sighted(beams, settings),
     )
     spans_ns = _spans_ns(recordings, sample, selection)
     latest_ns = _latest_ns(len(recordings), sample, selection)
@@ -294,64 +294,4 @@ def _placed(batch: ScanBatch, beams: Beams, source: PoseSource) -> Sweeps:
         clear_range=beams.clear_range,
         map_from_laser_first=map_from_laser[known],
         map_from_laser_last=map_from_laser[known],
-    )
-
-
-def _unlike(recordings: Sequence[Recording], sample: Sample) -> list[str]:
-    """A sentence for every group of recordings that are of one time and yet not of one drive."""
-    found = []
-    for group in joined(recordings, WINDOW_NS):
-        apart = [drive for drive in sample.drives if drive[0] in group]
-        if len(apart) > 1:
-            names = " and ".join(", ".join(str(recordings[index].path) for index in drive) for drive in apart)
-            found.append(
-                f"{names} hold other poses for the same times, as of two robots or two simulations: "
-                "they are read one after the other"
-            )
-    return found
-
-
-def _problems(
-    recordings: Sequence[Recording], sample: Sample, poses: SampledPoses, selection: Selection
-) -> tuple[str, ...]:
-    """What a replay of the recordings would be short of."""
-    found = _unlike(recordings, sample)
-    for index, recording in enumerate(recordings):
-        topics = [topic for topic in selection.scan_topics if (index, topic) in sample.scans]
-        if not topics:
-            found.append(f"{recording.path} has no scans of {', '.join(selection.scan_topics)}")
-        posed = [topic for topic in topics if poses.are_known(index, topic, selection)]
-        found += [
-            f"{recording.path} has no poses in '{selection.map_frame}' for {topic}"
-            for topic in topics
-            if topic not in posed
-        ]
-    return tuple(found)
-
-
-def _carried(seen: Seen, sample: Sample, selection: Selection) -> tuple[str, ...]:
-    """A sentence for every laser that cannot move in the map frame, because the robot carries both."""
-    if selection.pose != TF or not seen.frames.roots_of(selection.map_frame):
-        return ()
-    fixed = {frozenset((batch.parent, batch.child)) for batch in sample.static.all}
-    lasers = dict.fromkeys(
-        frame for topic in selection.scan_topics for frame in seen.scan_frames.get(topic, ())
-    )
-    chains = {laser: seen.frames.path(selection.map_frame, laser) for laser in lasers}
-    return tuple(
-        f"'{laser}' never moves in '{selection.map_frame}': that frame moves with the robot, and so would the map"
-        for laser, chain in chains.items()
-        if all(frozenset(pair) in fixed for pair in pairwise(chain))
-    )
-
-
-def _short_sighted(beams: Mapping[tuple[int, str], Beams], settings: Settings) -> tuple[str, ...]:
-    """A sentence for every scanner whose missing returns free less than a node looks at from its place."""
-    wanted = settings.map.radius + settings.map.node_spacing / 2
-    clear = {topic: one for (_, topic), one in beams.items() if one.missing_is_clear}
-    reach = {topic: one.clear_range for topic, one in clear.items() if one.clear_range < wanted}
-    return tuple(
-        f"{topic} reaches {metres:g} m and nodes look {settings.map.radius:g} m: little or nothing is seen clear; "
-        f"set map.radius to {max(0.5, metres - settings.map.node_spacing):g} (see timemap config)"
-        for topic, metres in reach.items()
     )
