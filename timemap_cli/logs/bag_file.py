@@ -41,6 +41,9 @@ class BagFile:
         """Open it and read its index; without one, scan it. Raises OSError or DamagedBagError."""
         self._file: IO[bytes] = path.open("rb")
         self._size = self._file.seek(0, 2)
+        self._newest: tuple[int, records.Record, bytes] | None = (
+            None  # place and content of the chunk read last
+        )
         self.problems: list[str] = []
         self.remarks: list[str] = []
         try:
@@ -104,7 +107,12 @@ class BagFile:
         return [chosen for part in parts if len(chosen := within(part, start_ns, end_ns))]
 
     def _content(self, span: BagSpan) -> tuple[records.Record, bytes]:
-        """A chunk and its uncompressed records."""
+        """A chunk and its uncompressed records; the last one is kept, as a sample asks for one many times."""
+        if self._newest is None or self._newest[0] != span.offset:
+            self._newest = span.offset, *self._read_content(span)
+        return self._newest[1:]
+
+    def _read_content(self, span: BagSpan) -> tuple[records.Record, bytes]:
         chunk = records.file_record(self._file, span.offset)
         if span.stop is None:
             return chunk, self._whole(chunk)
