@@ -72,3 +72,16 @@ def test_window_is_closed_at_its_start_and_open_at_its_end():
 def test_messages_of_one_time_keep_their_order():
     part = from_messages(CONNECTIONS[0], [2, 1, 2, 1], [b"a", b"b", b"c", b"d"])
     assert [in_log_order(part).message(index) for index in range(4)] == [b"b", b"d", b"a", b"c"]
+
+
+def test_chunks_that_all_overlap_are_not_held_together_beyond_a_bound(monkeypatch):
+    held = []
+    split = chunked.split_at
+    monkeypatch.setattr(chunked, "split_at", lambda parts, now: held.append(len(parts)) or split(parts, now))
+    monkeypatch.setattr(chunked, "MOST_HELD_BYTES", 40)
+    spans = [ChunkSpan(number, number, 1000) for number in range(50)]
+    lists = list(stretches(spans, lambda span: [messages(0, [span.offset, 1000])]))
+    assert sorted(text for texts in unpacked(lists) for text in texts) == sorted(
+        [f"0 {number}" for number in range(50)] + ["0 1000"] * 50
+    )
+    assert max(held) < 12

@@ -12,6 +12,7 @@ import numpy as np
 from timemap_cli.logs.raw import Connection, RawMessages
 
 STRETCH_BYTES = 4 << 20  # chunks are joined up to this size, so that small chunks cost no more than big ones
+MOST_HELD_BYTES = 512 << 20  # of chunks that overlap in time
 LARGEST_STRETCH_BYTES = 16 << 20  # and divided beyond it
 
 
@@ -33,7 +34,8 @@ def stretches(
     """Messages of all chunks in log-time order, also where chunks overlap in time.
 
     ``load`` gives a chunk's messages: for each connection at most one item, in log-time order. They are
-    kept back until no later chunk can hold anything older.
+    kept back until no later chunk can hold anything older, or until they are more than MOST_HELD_BYTES: a
+    file of chunks that all span the same hours would else be held whole. What is then older comes late.
     """
     ordered = sorted(spans, key=lambda span: (span.start_ns, span.offset))
     waiting: list[RawMessages] = []
@@ -45,6 +47,8 @@ def stretches(
             done, waiting = split_at(waiting, ordered[index + 1].start_ns)
         else:
             done, waiting = waiting, []
+        if _held_bytes(waiting) > MOST_HELD_BYTES:
+            done, waiting = done + waiting, []
         ready += done
         n_bytes += sum(part.n_bytes for part in done)
         if n_bytes >= STRETCH_BYTES:
@@ -52,6 +56,11 @@ def stretches(
             ready, n_bytes = [], 0
     if ready:
         yield from _divided(join(ready))
+
+
+def _held_bytes(parts: Sequence[RawMessages]) -> int:
+    """Bytes of the chunks that some messages are in."""
+    return sum({id(part.data): len(part.data) for part in parts}.values())
 
 
 def with_shortfall(
