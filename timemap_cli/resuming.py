@@ -117,6 +117,6 @@ def _damage_told(path: Path) -> Iterator[None]:
         raise
     except _MISFITS as error:
         raise TimemapError(
-            f"{path} is damaged: what it kept to go on from does not fit together",
+            f"{path} is damaged: what it kept to go on from does not fit together ({type(error).__name__}: {error})",
             hint="make it again, or replay all recordings in one go",
         ) from error

@@ -8,8 +8,6 @@ from timemap_cli.logs.selection import (
     Selection,
 )
 
-DAY_NS = 86_400_000_000_000
-
 
 class SampledPoses:
     """Poses of the recordings as far as a sample goes."""

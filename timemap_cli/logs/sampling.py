@@ -32,11 +32,6 @@ class Sample:
     poses: tuple[tuple[PoseBatch, ...], ...]  # of each recording
     drives: tuple[Drive, ...]  # recordings that share transforms and poses
 
-    def of_topic(self, topic: str) -> list[tuple[int, ScanBatch]]:
-        """Scans of a topic with the index of their recording."""
-        found = [(index, batches) for (index, name), batches in self.scans.items() if name == topic]
-        return [(index, batch) for index, batches in found for batch in batches]
-
 
 def take_sample(recordings: Sequence[Recording], scan_topics: Collection[str]) -> Sample:
     """Read a few hundred scans, the transforms and poses they may need, and all static transforms.

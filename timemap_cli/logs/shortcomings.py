@@ -16,8 +16,6 @@ from timemap_cli.logs.selection import (
     Selection,
 )
 
-DAY_NS = 86_400_000_000_000
-
 
 def _unlike(recordings: Sequence[Recording], sample: Sample) -> list[str]:
     """A sentence for every group of recordings that are of one time and yet not of one drive."""
