@@ -113,8 +113,9 @@ def box(x: float, y: float, length: float, width: float, turned_deg: float = 0.0
     """Corners (4, 2) of a rectangle around (x, y), its length along +x before it is turned."""
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * (length / 2, width / 2)
     angle = np.deg2rad(turned_deg)
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return np.asarray(corners @ turn.T + (x, y))
+    cos, sin = np.cos(angle), np.sin(angle)
+    along, across = corners.T[..., None]  # (4, 1) each; a matrix library would round by processor
+    return np.asarray((x, y) + (along * (cos, sin) + across * (-sin, cos)))
 
 
 def disc(x: float, y: float, radius: float, corners: int = 24) -> Floats:

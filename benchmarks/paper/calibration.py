@@ -134,9 +134,9 @@ def _judged(level: Level, robot: _Robot, nodes: int, scale: Scale) -> Judged:
         memory.remember(np.tile(np.arange(nodes), stop - start), stamps, block)
         said, shown = _claims(memory.recall(np.arange(nodes)))
         past = moments[:stop]
-        weight = 0.5 ** (np.arange(stop)[::-1] / level.half_life)
+        weight = 0.5 ** (np.arange(stop)[::-1] / level.half_life)[:, None]
         agreement = [
-            weight @ agrees(shown[n], nearest[past[:, n]], farthest[past[:, n]]) / weight.sum()
+            (weight * agrees(shown[n], nearest[past[:, n]], farthest[past[:, n]])).sum(0) / weight.sum()
             for n in range(nodes)
         ]
         sure = ~np.isnan(shown)

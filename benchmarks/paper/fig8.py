@@ -102,8 +102,9 @@ def measured(level: Level, part: float, nodes: int, names: Sequence[str]) -> dic
 def _misplaced(segments: Floats) -> Floats:
     """The world as a lost robot believes it to be."""
     x, y, yaw = ERROR
-    turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
-    moved = segments.reshape(-1, 2) @ turn + (x, y)
+    ends = segments.reshape(-1, 2)
+    along, across = (np.cos(yaw), np.sin(yaw)), (-np.sin(yaw), np.cos(yaw))
+    moved = ends[:, :1] * along + ends[:, 1:] * across + (x, y)
     return np.asarray(moved.reshape(-1, 4))
 
 

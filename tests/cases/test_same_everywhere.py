@@ -80,5 +80,6 @@ def test_with_another_hash_seed_locale_time_zone_and_number_of_threads(folder, e
         "TZ": "Asia/Kathmandu",
         "OPENBLAS_NUM_THREADS": "1",
         "OMP_NUM_THREADS": "1",
+        "OPENBLAS_CORETYPE": "Prescott",
     }
     assert digest(folder, **surroundings) == expected

@@ -1,9 +1,15 @@
 """The simulated robot's path, odometry and localisation."""
 
+import os
+import subprocess
+import sys
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
 from sample_logs.robot import compose, drifting_odometry, drive, invert, localisation_errors
+from tests.conftest import ROOT
 
 ROUTE = [(0.0, 0.0), (3.0, 0.0), (3.0, 2.0)]
 
@@ -19,6 +25,30 @@ def test_the_robot_drives_leg_by_leg_and_turns_on_the_spot():
     np.testing.assert_allclose(motion.at(np.array([corner + np.pi / 4])), [[3.0, 0.0, np.pi / 4]], atol=1e-2)
     np.testing.assert_allclose(motion.poses[-1], [3.0, 2.0, np.pi / 2], atol=1e-9)
     assert motion.duration == pytest.approx(corner + np.pi / 2 + 2.0 / 0.5 + 0.5, abs=0.05)
+
+
+def test_the_path_is_averaged_over_21_steps():
+    motion = drive([(0.0, 0.0), (0.1, 0.0)], speed=0.5, turn_rate=1.0, pause_s=1.0)
+    steps = np.arange(len(motion.times)) - np.arange(-10, 11)[:, None]
+    held = np.clip(0.5 * (0.02 * steps - 1.0), 0.0, 0.1)  # [m] at a speed of 0.5 m/s after 1 s
+    exact = [float(sum(map(Fraction, column)) / 21) for column in held.T]
+    np.testing.assert_allclose(motion.poses[:, 0], exact, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("kernel", ["Haswell", "Prescott", "Zen"])
+def test_the_path_is_the_same_whichever_kernel_a_matrix_library_chooses(kernel):
+    program = (
+        "import sys; from sample_logs.robot import drive;"
+        f"sys.stdout.buffer.write(drive({ROUTE}, 0.45, 0.9).poses.tobytes())"
+    )
+    made = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | {"OPENBLAS_CORETYPE": kernel},
+        cwd=ROOT,
+        capture_output=True,
+        check=True,
+    )
+    assert made.stdout == drive(ROUTE, 0.45, 0.9).poses.tobytes()
 
 
 def test_the_robot_never_jumps():
