@@ -13,6 +13,7 @@ from timemap_cli.errors import UsageError
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.level_map import UNKNOWN, OccupancyGrid, merged_points, occupancy_grid
 from timemap_cli.model.nodes import Node
+from timemap_cli.reports.quiet_matplotlib import quiet_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +30,7 @@ _FRAME_M = 0.5  # round what is farthest from a node
 _MARGIN_M = 0.1  # between a change and the box round it
 
 
+@quiet_matplotlib()
 def level_picture(
     title: str,
     nodes: Sequence[Node],
@@ -52,6 +54,7 @@ def level_picture(
     return _png(figure)
 
 
+@quiet_matplotlib()
 def node_picture(title: str, node: Node, levels: Mapping[str, Estimate | None]) -> bytes:
     """What each level holds around one node, laid over each other; None: a level that never held anything there.
 
