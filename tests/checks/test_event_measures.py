@@ -70,6 +70,19 @@ def test_what_three_nodes_saw_is_not_new_where_two_expected_ones_saw_it():
     assert figures([weak, replace(EVENT, x=2.1)], [weak])["events.missing"].passed
 
 
+def test_of_two_equally_near_events_the_one_of_the_same_time_is_the_partner():
+    expected, early = replace(EVENT, x=0.3), replace(EVENT, x=0.4)
+    later = replace(EVENT, x=0.2, since_ns=EVENT.since_ns + SECOND)  # nearer by a last bit
+    assert figures([expected], [early, later])["events.time"].value == 0
+    assert figures([expected], [later, early])["events.time"].value == 0
+
+
+def test_of_two_events_equally_far_off_the_first_is_named():
+    first, second = replace(EVENT, x=0.2, y=1.0), replace(EVENT, x=0.3, y=9.0)
+    found = [replace(first, x=0.3), replace(second, x=0.4)]  # the second is farther off by a last bit
+    assert " at 0.20, 1.00 " in figures([first, second], found)["events.place"].text
+
+
 def test_an_event_that_is_off_by_its_tolerance_to_the_centimetre_passes():
     expected, found = replace(EVENT, x=1.0), replace(EVENT, x=1.3)  # 0.30000000000000004 m in binary
     assert figures([expected], [found])["events.place"].passed

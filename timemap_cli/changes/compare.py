@@ -16,6 +16,7 @@ from timemap_cli.changes.things import Thing, link
 from timemap_cli.changes.vote import is_believed
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.ordering import to_order
 
 _DEFAULT = Rules()
 
@@ -49,10 +50,14 @@ def compare(
     changes = [tell.moved(vanished[v], appeared[a]) for v, a in moves]
     changes += [tell.one(Kind.VANISHED, t) for v, t in enumerate(vanished) if v not in {v for v, _ in moves}]
     changes += [tell.one(Kind.APPEARED, t) for a, t in enumerate(appeared) if a not in {a for _, a in moves}]
-    changes.sort(key=lambda change: (-change.size_m, change.kind.value, change.x, change.y))
+    changes.sort(key=_largest_first)
     compared = before.firm(rules, rules.min_samples) & after.firm(rules, rules.min_samples)
     per_node = _count_bins(numbers, compared.sum(axis=1).tolist(), vanished + appeared)
     return Difference(tuple(changes), per_node, silent, places.angle_bins)
+
+
+def _largest_first(change: Change) -> tuple[float, str, float, float]:
+    return -to_order(change.size_m), change.kind.value, to_order(change.x), to_order(change.y)
 
 
 def _angle_bins(numbers: Sequence[int], old: Mapping[int, Estimate], new: Mapping[int, Estimate]) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from timemap_cli.checks.snapshot import SeenEvent
 from timemap_cli.checks.tolerances import TOLERANCES, within
 from timemap_cli.checks.verdict import Measure, Spot
+from timemap_cli.model.ordering import to_order
 from timemap_cli.times import format_time
 
 _SAME_M = 1.0  # farther apart are two events
@@ -43,7 +44,7 @@ def _pairs(
             -sum(event.nodes >= _FIRM_NODES for event in (one, other)),
             not within(_apart(one, other), allowed["events.place"])
             or not within(_delay(one, other), allowed["events.time"]),
-            _apart(one, other),
+            to_order(_apart(one, other)),
             abs(one.since_ns - other.since_ns),
             i,
             j,
@@ -70,7 +71,7 @@ def _apart(one: SeenEvent, other: SeenEvent) -> float:
 def _farthest(
     name: str, pairs: Sequence[tuple[SeenEvent, SeenEvent]], allowed: Mapping[str, float]
 ) -> Measure:
-    worst = max(pairs, key=lambda pair: _apart(*pair), default=None)
+    worst = max(pairs, key=lambda pair: to_order(_apart(*pair)), default=None)
     if worst is None:
         return _measure(name, 0.0, "no change event to compare", allowed)
     distance = _apart(*worst)

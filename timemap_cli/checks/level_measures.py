@@ -71,7 +71,7 @@ class _Told:
         )
         finite = np.where(np.isfinite(distance) & moved, distance, 0.0)
         if finite.any():
-            row, angle_bin = np.unravel_index(int(finite.argmax()), finite.shape)
+            row, angle_bin = np.unravel_index(int(finite.round(6).argmax()), finite.shape)
             x, y = self._end(int(row), int(angle_bin))
             text += (
                 f", the farthest by {finite.max():.2f} m at {x:.2f}, {y:.2f} (node {self._pair.numbers[row]})"

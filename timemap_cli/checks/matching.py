@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.ordering import to_order
 
 Floats = npt.NDArray[np.float64]
 
@@ -23,11 +24,10 @@ class Matched:
 def matched(expected: Sequence[Node], found: Sequence[Node], within_m: float) -> Matched:
     """Nodes at nearly the same place, the nearest first; each has one partner at most."""
     apart = np.hypot(*(_places(expected)[:, None] - _places(found)[None]).transpose(2, 0, 1))
-    near = np.argwhere(apart <= within_m)
-    order = np.lexsort((near[:, 1], near[:, 0], apart[near[:, 0], near[:, 1]]))
+    near = np.argwhere(apart <= within_m).tolist()
     taken: dict[int, int] = {}
     given: set[int] = set()
-    for one, other in near[order].tolist():
+    for one, other in sorted(near, key=lambda pair: (to_order(apart[tuple(pair)]), pair)):
         if one not in taken and other not in given:
             taken[one] = other
             given.add(other)

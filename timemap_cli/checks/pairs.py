@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.checks.verdict import Spot
+from timemap_cli.model.ordering import to_order
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -32,7 +33,7 @@ class Pair:
 
     def node_spots(self, rows: Ints, values: Floats, told: Callable[[float], str]) -> tuple[Spot, ...]:
         """The nodes, by their rows, with the greatest values; `told` puts a value into words."""
-        order = np.argsort(-values, kind="stable")[:SHOWN]
+        order = sorted(range(len(values)), key=lambda i: -to_order(float(values[i])))[:SHOWN]
         return tuple(
             Spot(
                 float(self.centres[row, 0]),

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.checks.surfaces import farther
+from timemap_cli.model.ordering import to_order
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -58,7 +59,7 @@ def moved_places(ends: Ends, step_m: float, nodes: int) -> list[MovedPlace]:
     places = [_place(ends, which[group]) for group in _touching(ends.x[which], ends.y[which])]
     least = min(_LEAST_NODES, nodes)
     found = [place for place in places if len(place.nodes) >= least]
-    return sorted(found, key=lambda place: (-place.ends, place.x, place.y))
+    return sorted(found, key=lambda place: (-place.ends, to_order(place.x), to_order(place.y)))
 
 
 def confirmed(levels: Sequence[Sequence[MovedPlace]]) -> list[list[MovedPlace]]:

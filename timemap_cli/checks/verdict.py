@@ -6,6 +6,7 @@ from enum import Enum
 
 from timemap_cli.checks.tolerances import within
 from timemap_cli.errors import ExitCode, TimemapError
+from timemap_cli.model.ordering import to_order
 
 
 class Outcome(Enum):
@@ -63,7 +64,7 @@ class Verdict:
     @property
     def failures(self) -> list[Measure]:
         """What is out of tolerance, the worst first."""
-        return sorted((one for one in self.measures if not one.passed), key=lambda one: -one.excess)
+        return sorted((one for one in self.measures if not one.passed), key=lambda one: -to_order(one.excess))
 
     @property
     def outcome(self) -> Outcome:

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from timemap_cli.model.ordering import to_order
+
 Event = Mapping[str, Any]  # as in the document of the schema timemap.changes/1
 
 
@@ -48,9 +50,9 @@ class EventSelection:
 
 ORDERS: Mapping[str, Callable[[Event], Any]] = {
     "time": lambda event: (int(event["first_seen_ns"]), event["id"]),
-    "size": lambda event: (-size_m(event), event["id"]),
-    "support": lambda event: (-event["support"], event["id"]),
-    "place": lambda event: (event["x"], event["y"], event["id"]),
+    "size": lambda event: (-to_order(size_m(event)), event["id"]),
+    "support": lambda event: (-to_order(event["support"]), event["id"]),
+    "place": lambda event: (to_order(event["x"]), to_order(event["y"]), event["id"]),
 }
 
 
