@@ -1,7 +1,7 @@
 # make setup   .venv with timemap in it
 # make demo    the main job on the sample recordings: replay, then diff
-# make test    the tests
-# make check   ruff, mypy, import-linter
+# make test    the tests, in random order (RANDOM_SEED=N repeats one)
+# make check   ruff, mypy, import-linter, deptry
 # make bench   how fast a replay is beside plain reading
 # make changes-bench  how well changes are told in a simulated building whose changes are known
 # make damage  what becomes of recordings that are damaged at random
@@ -30,13 +30,15 @@ demo: $(VENV)/timemap.stamp
 	$(BIN)/timemap diff $(BUILD)/demo.timemap.mcap --level long mid
 
 test: $(VENV)/dev.stamp
-	$(BIN)/python -m pytest -q -n auto --dist loadfile
+	$(BIN)/python -m pytest -q -rs -n auto --dist loadfile $(if $(RANDOM_SEED),--randomly-seed=$(RANDOM_SEED))
 
 check: $(VENV)/dev.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+	$(BIN)/deptry timemap_cli
+	$(BIN)/deptry tests sample_logs benchmarks --exclude '\.venv' --ignore DEP002,DEP004
 
 bench: $(VENV)/timemap.stamp
 	$(BIN)/python benchmarks/replay_hour.py

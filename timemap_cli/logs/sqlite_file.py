@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-import apsw  # comes with rosbags
+import apsw
 from rosbags.interfaces import Connection as RosbagsConnection
 from rosbags.interfaces import ConnectionExtRosbag2, MessageDefinitionFormat
 from rosbags.rosbag2 import ReaderError
