@@ -71,18 +71,19 @@ def recordings_table(recordings: Sequence[Recorded]) -> str:
 
 
 def _missed(places: Sequence[Place]) -> list[str]:
-    return [f"    missed  {'/'.join(sorted(p.kinds)):18} {p.change.what:10} {_at(p.bounds)}" for p in places]
+    return [f"    missed  {'/'.join(sorted(p.kinds)):18} {p.change.what:10} {at(p.bounds)}" for p in places]
 
 
 def _false(found: Found) -> list[str]:
     again = found.again
     return [
-        f"    {'again' if c in again else 'false':7} {c.kind:18} {c.event.name:10} {_at(c.bounds)}"
+        f"    {'again' if c in again else 'false':7} {c.kind:18} {c.event.name:10} {at(c.bounds)}"
         for c in found.false
     ]
 
 
-def _at(bounds: tuple[float, float, float, float]) -> str:
+def at(bounds: tuple[float, float, float, float]) -> str:
+    """Bounds in words [m]: x, then y."""
     x_min, y_min, x_max, y_max = bounds
     return f"{x_min:6.2f}..{x_max:.2f}, {y_min:.2f}..{y_max:.2f}"
 

@@ -2,8 +2,9 @@
 
 import pytest
 
-from benchmarks.changes.days import judged, timemap_json
+from benchmarks.changes.days import judged
 from benchmarks.changes.places import Event
+from benchmarks.changes.recordings import timemap_json
 from benchmarks.changes.table import days_table
 from tests.benchmarks.changes.making import S, change, square, truth
 
