@@ -12,6 +12,7 @@ import click
 from benchmarks.changes.recordings import ROOT
 from benchmarks.changes.scenes.building import far_lanes, other_lanes, same_lanes
 from benchmarks.changes.scenes.hall import open_halls
+from benchmarks.changes.scenes.real import real_recordings
 from benchmarks.changes.scenes.work import Work
 
 SCENES: Mapping[str, Callable[[Work], str]] = {
@@ -19,6 +20,7 @@ SCENES: Mapping[str, Callable[[Work], str]] = {
     "lanes": other_lanes,
     "far_lanes": far_lanes,
     "hall": open_halls,
+    "real": real_recordings,
 }
 
 
@@ -29,9 +31,15 @@ SCENES: Mapping[str, Callable[[Work], str]] = {
 @click.option(
     "--folder", type=click.Path(path_type=Path), default=ROOT / "build" / "changes", show_default=True
 )
-def main(scenes: tuple[str, ...], quick: bool, again: bool, folder: Path) -> None:
+@click.option(
+    "--data",
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    envvar="TIMEMAP_RECORDINGS",
+    help="Folder of real recordings; also the environment variable TIMEMAP_RECORDINGS.",
+)
+def main(scenes: tuple[str, ...], quick: bool, again: bool, folder: Path, data: Path | None) -> None:
     """Make recordings, replay them, and judge what timemap tells of them."""
-    work = Work(folder.resolve(), quick, again)
+    work = Work(folder.resolve(), quick, again, data.resolve() if data else None)
     for name in scenes or SCENES:
         click.echo(f"== {name}\n")
         click.echo(SCENES[name](work) + "\n")

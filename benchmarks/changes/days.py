@@ -3,6 +3,7 @@
 Each level's newest estimates at the end of a day are compared with those at the end of the day before.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -39,15 +40,23 @@ def day_by_day(result: Path, level: str, truth: Truth, nodes: int) -> Days:
     )
 
 
-def compared(level: str, after: Recorded, nodes: int, *arguments: str) -> tuple[list[Event], float]:
+def compared(
+    level: str, after: Recorded, nodes: int, *arguments: str, other_level: str = ""
+) -> tuple[list[Event], float]:
     """What one call of `timemap diff` tells as events of the recording `after`, and the share of bins compared.
 
     RuntimeError where it refuses to compare.
     """
-    told = timemap_json("diff", *arguments, "--level", level)
+    told = timemap_json("diff", *arguments, "--level", level, *([other_level] if other_level else []))
     summary = told["summary"]
     share = summary["compared_bins"] / (nodes * (summary["angle_bins"] or 1))
     return [_event(change, i, level, after) for i, change in enumerate(told["changes"])], share
+
+
+def refusal(error: RuntimeError) -> str:
+    """Why a call of timemap failed, without the folders of files."""
+    first = str(error).splitlines()[0]
+    return re.sub(r"(?<!\S)/\S*/", "", first.rpartition("error: ")[2])
 
 
 def judged(events: Sequence[Event], level: str, truth: Truth, shares: Sequence[float]) -> Days:

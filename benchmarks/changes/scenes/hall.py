@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.changes.days import compared
+from benchmarks.changes.days import compared, refusal
 from benchmarks.changes.places import Event, claims, places_of_changes, places_of_transitions, read_events
 from benchmarks.changes.recordings import folder_of, make, replayed, timemap_json
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.scores import Found, find
-from benchmarks.changes.table import at
+from benchmarks.changes.table import claim_line
 from benchmarks.changes.truth import Truth, recorded, truth_of
 from benchmarks.changes.worlds import clearance, open_hall, patrols
 from benchmarks.changes.worlds.open_hall import Hall
@@ -38,10 +38,16 @@ def open_halls(work: Work) -> str:
     """Figures of all layouts."""
     made = folder_of(work.folder, "hall", (open_hall, clearance, patrols))
     layouts = open_hall.LAYOUTS[: QUICK_LAYOUTS if work.quick else None]
-    return "\n\n".join(_layout(open_hall.hall(seed), made / f"layout_{seed}", work) for seed in layouts)
+    parts, told = [], []
+    for seed in layouts:
+        head, here = _layout(open_hall.hall(seed), made / f"layout_{seed}", work)
+        parts.append(f"{head}\n{table(here)}")
+        told.append(here)
+    return "\n\n".join([*parts, together(told)])
 
 
-def _layout(hall: Hall, made: Path, work: Work) -> str:
+def _layout(hall: Hall, made: Path, work: Work) -> tuple[str, list[Told | str]]:
+    """A headline, and what is told by all ways of asking."""
     drives = hall.drives()
     recordings = make(made, drives)
     truth = truth_of([recorded(n, i, d) for i, (n, d) in enumerate(drives.items(), 1)], hall.things)
@@ -50,7 +56,7 @@ def _layout(hall: Hall, made: Path, work: Work) -> str:
         replayed([one], made / f"{one.name}.timemap.mcap", again=work.again).result for one in recordings
     ]
     told = [*_of_one_result(both.result, truth), *_of_two_results(apart, truth)]
-    return "\n".join([f"layout {hall.seed}, {_nodes(both.result, apart[0])}, {both.lost}", table(told)])
+    return f"layout {hall.seed}, {_nodes(both.result, apart[0])}, {both.lost}", told
 
 
 def _nodes(both: Path, first: Path) -> str:
@@ -88,7 +94,7 @@ def _of_two_results(results: Sequence[Path], truth: Truth) -> list[Told | str]:
         try:
             differences, share = compared(level, truth.recordings[1], nodes, *map(str, results))
         except RuntimeError as error:
-            told.append(f"{how}: {str(error).splitlines()[0]}")
+            told.append(f"{how}: {refusal(error)}")
         else:
             told.append(_judged(how, differences, share, truth))
     return told
@@ -114,5 +120,22 @@ def table(told: Sequence[Told | str]) -> str:
         )
     for one in told:
         if not isinstance(one, str):
-            lines += [f"    {one.how}: other {c.kind} {at(c.bounds)}" for c in one.found.false]
+            lines += [f"  {one.how}, other:{claim_line(c)}" for c in one.found.false]
+    return "\n".join(lines)
+
+
+def together(layouts: Sequence[Sequence[Told | str]]) -> str:
+    """A line for each way of asking: pieces of all layouts that are told, the fewest of one, and others."""
+    lines = [f"all layouts{'':19}{'pieces':>8}{'fewest':>8}{'wholly':>8}{'others':>8}{'most':>6}"]
+    for column in zip(*layouts, strict=True):
+        told = [one for one in column if isinstance(one, Told)]
+        if len(told) < len(column):
+            lines.append(f"  {next(one for one in column if isinstance(one, str))}")
+            continue
+        pieces = [sum(n > 0 for n in one.by_piece) for one in told]
+        wholly = sum(one.by_piece.count(2) for one in told)
+        others = [len(one.found.false) for one in told]
+        lines.append(
+            f"  {told[0].how:28}{sum(pieces):>8}{min(pieces):>8}{wholly:>8}{sum(others):>8}{max(others):>6}"
+        )
     return "\n".join(lines)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from benchmarks.changes.places import claims, places_of_changes
-from benchmarks.changes.scenes.hall import Told, table
+from benchmarks.changes.scenes.hall import Told, table, together
 from benchmarks.changes.scores import find
 from tests.benchmarks.changes.making import change, event, square, truth
 
@@ -29,4 +29,13 @@ def test_the_table_counts_pieces_places_and_others():
     assert header.split() == ["pieces", "wholly", "places", "others", "compared"]
     assert line.split() == ["changes", "1/2", "0/2", "1/4", "1", "12.5%"]
     assert refused.split() == ["diff:", "refused"]
-    assert other.split()[:3] == ["changes:", "other", "appeared"]
+    assert other.split()[:3] == ["changes,", "other:", "appeared"]
+
+
+def test_all_layouts_together_tell_the_worst_of_them():
+    good = told(event("appeared", (4, 0, 5, 1), 210), event("vanished", (0, 0, 1, 1), 210))
+    bad = told(event("vanished", (20, 20, 21, 21), 210))
+    header, changes, refused = together([[good, "diff: refused"], [bad, "diff: refused"]]).splitlines()
+    assert header.split() == ["all", "layouts", "pieces", "fewest", "wholly", "others", "most"]
+    assert changes.split() == ["changes", "1", "0", "1", "1", "1"]
+    assert refused.split() == ["diff:", "refused"]
