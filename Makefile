@@ -3,7 +3,7 @@
 # make test    the tests, in random order (RANDOM_SEED=N repeats one)
 # make check   ruff, mypy, import-linter, deptry
 # make bench   how fast a replay is beside plain reading
-# make changes-bench  how well changes are told in a simulated building whose changes are known
+# make changes-bench  how well changes are told where they are known
 # make damage  what becomes of recordings that are damaged at random
 # make kill-bench  replays stopped at random moments, by kill -9 and otherwise: nothing earlier is lost
 # make mutations  which mistakes timemap check catches, and whether noise alone passes
@@ -44,7 +44,7 @@ bench: $(VENV)/timemap.stamp
 	$(BIN)/python benchmarks/replay_hour.py
 
 changes-bench: $(VENV)/timemap.stamp
-	$(BIN)/python -m benchmarks.changes
+	$(BIN)/python -m benchmarks.changes --again
 
 damage: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.damage

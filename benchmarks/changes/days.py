@@ -3,9 +3,7 @@
 Each level's newest estimates at the end of a day are compared with those at the end of the day before.
 """
 
-import json
-import subprocess
-import sys
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,10 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.changes.places import Claim, Event, claims, moved_from, places_of_transitions
+from benchmarks.changes.recordings import timemap_json
 from benchmarks.changes.scores import Found, false_area, find, seen_in
 from benchmarks.changes.truth import Recorded, Truth
-
-TIMEMAP = str(Path(sys.executable).with_name("timemap"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,26 +29,34 @@ class Days:
     compared: float  # share of all angle bins of all nodes, mean over the pairs of days
 
 
-def timemap_json(*arguments: str) -> dict[str, Any]:
-    """What a call of timemap prints with --json; RuntimeError where it fails."""
-    ran = subprocess.run([TIMEMAP, *arguments, "--json"], capture_output=True, text=True, check=False)
-    if ran.returncode:
-        raise RuntimeError(f"timemap {arguments[0]} ended with {ran.returncode}: {ran.stderr.strip()}")
-    document: dict[str, Any] = json.loads(ran.stdout)
-    return document
-
-
 def day_by_day(result: Path, level: str, truth: Truth, nodes: int) -> Days:
     """Compare each day with the one before at one level; `nodes` is the number of all nodes."""
-    events, shares = [], []
-    for before, after in pairwise(truth.recordings):
-        told = timemap_json(
-            "diff", str(result), "--level", level, "--between", str(before.end_ns), str(after.end_ns)
-        )
-        summary = told["summary"]
-        shares.append(summary["compared_bins"] / (nodes * (summary["angle_bins"] or 1)))
-        events += [_event(change, i, level, after) for i, change in enumerate(told["changes"])]
-    return judged(events, level, truth, shares)
+    told = [
+        compared(level, after, nodes, str(result), "--between", str(before.end_ns), str(after.end_ns))
+        for before, after in pairwise(truth.recordings)
+    ]
+    return judged(
+        [event for events, _ in told for event in events], level, truth, [share for _, share in told]
+    )
+
+
+def compared(
+    level: str, after: Recorded, nodes: int, *arguments: str, other_level: str = ""
+) -> tuple[list[Event], float]:
+    """What one call of `timemap diff` tells as events of the recording `after`, and the share of bins compared.
+
+    RuntimeError where it refuses to compare.
+    """
+    told = timemap_json("diff", *arguments, "--level", level, *([other_level] if other_level else []))
+    summary = told["summary"]
+    share = summary["compared_bins"] / (nodes * (summary["angle_bins"] or 1))
+    return [_event(change, i, level, after) for i, change in enumerate(told["changes"])], share
+
+
+def refusal(error: RuntimeError) -> str:
+    """Why a call of timemap failed, without the folders of files."""
+    first = str(error).splitlines()[0]
+    return re.sub(r"(?<!\S)/\S*/", "", first.rpartition("error: ")[2])
 
 
 def judged(events: Sequence[Event], level: str, truth: Truth, shares: Sequence[float]) -> Days:

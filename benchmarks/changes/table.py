@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 
 from benchmarks.changes.days import Days
-from benchmarks.changes.places import Place
+from benchmarks.changes.places import Claim, Place
 from benchmarks.changes.scores import MOST_HALF_LIVES, Adoption, Found, Score
 from benchmarks.changes.truth import Recorded
 
@@ -71,18 +71,26 @@ def recordings_table(recordings: Sequence[Recorded]) -> str:
 
 
 def _missed(places: Sequence[Place]) -> list[str]:
-    return [f"    missed  {'/'.join(sorted(p.kinds)):18} {p.change.what:10} {_at(p.bounds)}" for p in places]
+    return [f"    missed  {'/'.join(sorted(p.kinds)):18} {p.change.what:10} {at(p.bounds)}" for p in places]
 
 
 def _false(found: Found) -> list[str]:
     again = found.again
     return [
-        f"    {'again' if c in again else 'false':7} {c.kind:18} {c.event.name:10} {_at(c.bounds)}"
+        f"    {'again' if c in again else 'false':7} {c.kind:18} {c.event.name:10} {at(c.bounds)}"
         for c in found.false
     ]
 
 
-def _at(bounds: tuple[float, float, float, float]) -> str:
+def claim_line(claim: Claim) -> str:
+    """One claim: kind, place and size [m], and the event that makes it."""
+    x_min, y_min, x_max, y_max = claim.bounds
+    size = f"{x_max - x_min:.2f} x {y_max - y_min:.2f}"
+    return f"    {claim.kind:10} {at(claim.bounds)}  {size}  ({claim.event.name})"
+
+
+def at(bounds: tuple[float, float, float, float]) -> str:
+    """Bounds in words [m]: x, then y."""
     x_min, y_min, x_max, y_max = bounds
     return f"{x_min:6.2f}..{x_max:.2f}, {y_min:.2f}..{y_max:.2f}"
 

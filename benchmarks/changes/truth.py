@@ -1,4 +1,4 @@
-"""What really changed in the building.
+"""What really changed in a simulated world.
 
 Times are stamps in nanoseconds, lengths metres in the map frame. A change holds from `since_ns` until just before
 `until_ns`; None: it holds to this day.
@@ -10,8 +10,9 @@ from math import hypot, isfinite
 
 import numpy as np
 
-from benchmarks.changes.building import things
-from benchmarks.changes.patrols import FIRST_NS, Patrol, patrols
+from benchmarks.changes.worlds.building import things
+from benchmarks.changes.worlds.patrols import FIRST_NS, Patrol
+from sample_logs.drives import Drive
 from sample_logs.rays import Floats
 from sample_logs.world import Thing
 
@@ -105,30 +106,37 @@ def gap(a: Bounds, b: Bounds) -> float:
     return hypot(max(a[0] - b[2], b[0] - a[2], 0.0), max(a[1] - b[3], b[1] - a[3], 0.0))
 
 
-def building_truth(days: int) -> Truth:
-    """The truth of the first `days` patrols, without what changed only later."""
-    recordings = tuple(_recorded(patrol) for patrol in patrols(days))
+def building_truth(planned: Sequence[Patrol]) -> Truth:
+    """The truth of patrols through the building, without what changed only later."""
+    return truth_of([recorded(one.file, one.day, one.drive()) for one in planned], things())
+
+
+def truth_of(recordings: Sequence[Recorded], there: Sequence[Thing]) -> Truth:
+    """The truth of recordings of a world; times of things are seconds since `FIRST_NS`.
+
+    A thing is listed once for every place and every stretch of time, always by the same name.
+    """
     end_ns = recordings[-1].end_ns
     by_name: dict[str, list[Thing]] = {}
-    for thing in things():
+    for thing in there:
         by_name.setdefault(thing.name, []).append(thing)
     found = [_change(name, places, end_ns) for name, places in by_name.items()]
     changes = [change for change in found if change is not None]
-    return Truth(recordings, tuple(sorted(changes, key=lambda c: (c.episodes[0].since_ns, c.what))))
+    return Truth(tuple(recordings), tuple(sorted(changes, key=lambda c: (c.episodes[0].since_ns, c.what))))
 
 
-def _recorded(patrol: Patrol) -> Recorded:
-    drive = patrol.drive()
+def recorded(file: str, day: int, drive: Drive) -> Recorded:
+    """What is known of the recording of a drive."""
     walked = tuple(
         Walked(
             walk.name,
             tuple(drive.start_ns + round(t * 1e9) for t in walk.times.tolist()),
             tuple((round(x, 3), round(y, 3)) for x, y in walk.positions.tolist()),
         )
-        for walk in patrol.walks
+        for walk in drive.world.walks
     )
     end_ns = drive.start_ns + round(drive.motion.duration * 1e9)
-    return Recorded(patrol.file, patrol.day, drive.start_ns, end_ns, walked)
+    return Recorded(file, day, drive.start_ns, end_ns, walked)
 
 
 def _change(name: str, places: Sequence[Thing], end_ns: int) -> TrueChange | None:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from rosbags.highlevel import AnyReader
 from ruamel.yaml import YAML
 
-from benchmarks.changes.patrols import SCANNER, Patrol
+from benchmarks.changes.worlds.patrols import SCANNER, Patrol
 from timemap_cli.model.gate import Gate, passing
 from timemap_cli.results.reader import ResultReader
 from timemap_cli.spans import Span

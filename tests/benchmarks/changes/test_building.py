@@ -1,17 +1,24 @@
 """The simulated building: what stands where on which day, and what the robot can see of it."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from rosbags.highlevel import AnyReader
 
-from benchmarks.changes.building import DAYS, building, door_open, morning, patrol, route, things, walls
-from benchmarks.changes.patrols import SCANNER, make, patrols
+from benchmarks.changes.worlds.building import (
+    DAYS,
+    building,
+    door_open,
+    morning,
+    route,
+    things,
+)
+from benchmarks.changes.worlds.clearance import clearance
+from benchmarks.changes.worlds.lanes import standing_on
+from benchmarks.changes.worlds.patrols import SCANNER, patrols
 from sample_logs.recorder import ScanEvent
 from sample_logs.robot import Motion, compose
-from sample_logs.world import World, outline_segments
+from sample_logs.world import World
 
 NOON = 43200.0
 
@@ -33,7 +40,7 @@ def ranges(world: World, motion: Motion) -> np.ndarray:
 def test_there_is_a_patrol_for_each_of_twelve_days():
     begins = [p.begins for p in patrols()]
     assert [int(b // 86400) for b in begins] == list(range(12))
-    assert all(60.0 < patrol(day).duration < 240.0 for day in range(1, DAYS + 1))
+    assert all(60.0 < p.motion.duration < 240.0 for p in patrols(DAYS))
 
 
 def test_the_door_is_open_on_even_days_and_only_then():
@@ -61,19 +68,13 @@ def test_furniture_is_moved_in_the_night_before_day_4():
 
 @pytest.mark.parametrize("day", range(1, 9))
 def test_the_route_stays_clear_of_all_that_stands_there(day):
-    now = morning(day) + NOON
-    there = [outline_segments(t.outline) for t in things() if t.since <= now < t.until]
-    segments = np.concatenate([walls(), *there])
-    points = np.concatenate([np.linspace(a, b, 40) for a, b in pairwise(np.array(route(day)))])
-    start, edge = segments[None, :, :2], (segments[:, 2:] - segments[:, :2])[None]
-    share = np.clip(((points[:, None] - start) * edge).sum(-1) / (edge**2).sum(-1), 0, 1)
-    assert np.linalg.norm(points[:, None] - start - share[..., None] * edge, axis=-1).min() > 0.3
+    assert clearance(route(day), standing_on(day)) > 0.3
 
 
 @pytest.mark.parametrize("day", [2, 6])
 def test_the_robot_sees_everything_that_changes_in_the_rooms_it_visits(day):
     """Without the thing a good many beams would go on for another 0.3 m at least."""
-    world, motion = building(morning(day) + NOON), patrol(day)
+    world, motion = building(morning(day) + NOON), patrols(day)[-1].motion
     seen = ranges(world, motion)
     changing = [t for t in world.things if (np.isfinite(t.since) or np.isfinite(t.until))]
     for thing in changing:
@@ -121,13 +122,3 @@ def test_the_same_scans_come_out_every_time():
         return next(e for e in patrols(3)[2].drive().events() if isinstance(e, ScanEvent))
 
     assert first().ranges.tobytes() == first().ranges.tobytes()
-
-
-def test_a_recording_is_made_once(tmp_path):
-    (path,) = make(tmp_path, patrols(1))
-    with AnyReader([path]) as reader:
-        counts = {c.topic: c.msgcount for c in reader.connections}
-    assert counts["/scan"] == pytest.approx(10 * (patrol(1).duration - 0.6), abs=2)
-    written = (path / "metadata.yaml").stat().st_mtime_ns
-    assert make(tmp_path, patrols(1)) == [path]
-    assert (path / "metadata.yaml").stat().st_mtime_ns == written

@@ -2,8 +2,9 @@
 
 import pytest
 
-from benchmarks.changes.days import judged, timemap_json
+from benchmarks.changes.days import judged, refusal
 from benchmarks.changes.places import Event
+from benchmarks.changes.recordings import timemap_json
 from benchmarks.changes.table import days_table
 from tests.benchmarks.changes.making import S, change, square, truth
 
@@ -54,3 +55,10 @@ def test_the_table_has_a_line_for_each_level():
 def test_a_call_of_timemap_that_fails_says_why(tmp_path):
     with pytest.raises(RuntimeError, match=r"timemap diff ended with 2: error: .*none\.timemap\.mcap"):
         timemap_json("diff", str(tmp_path / "none.timemap.mcap"), "--level", "short", "mid")
+
+
+def test_a_refusal_is_told_without_folders():
+    error = RuntimeError(
+        "timemap diff ended with 2: error: /a/b/one.mcap and /c/two.mcap share no nodes\n  try: x"
+    )
+    assert refusal(error) == "one.mcap and two.mcap share no nodes"

@@ -2,29 +2,29 @@
 
 import pytest
 
-from benchmarks.changes.__main__ import recordings_folder, replay, report, unknown_share
-from benchmarks.changes.patrols import make, patrols
+from benchmarks.changes.recordings import make, replayed
+from benchmarks.changes.scenes.building import recordings_folder, report, unknown_share
 from benchmarks.changes.truth import building_truth
+from benchmarks.changes.worlds.patrols import patrols
 from timemap_cli.results.reader import ResultReader
 
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
     folder = tmp_path_factory.mktemp("building")
-    path = folder / "two_days.timemap.mcap"
-    replay(make(folder, patrols(2)), path)
-    return path
+    recordings = make(folder, {one.file: one.drive() for one in patrols(2)})
+    return replayed(recordings, folder / "two_days.timemap.mcap")
 
 
 def test_the_opened_door_is_told_by_the_fastest_level(result):
-    text = report(result, building_truth(2))
+    text = report(result, building_truth(patrols(2)), patrols(2))
     assert text.startswith("2 patrols, 5 minutes, ")
     (line,) = [line for line in text.splitlines() if line.startswith("  short ")]
     assert line.split()[1:4] == ["1/1", "1", "1.00"]
 
 
 def test_little_is_unknown_after_two_patrols(result):
-    with ResultReader(result) as reader:
+    with ResultReader(result.result) as reader:
         assert 0.0 < unknown_share(reader, "long") < 0.05
 
 

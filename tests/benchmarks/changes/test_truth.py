@@ -4,10 +4,9 @@ import json
 
 import pytest
 
-from benchmarks.changes.building import DAYS
-from benchmarks.changes.patrols import FIRST_NS
 from benchmarks.changes.truth import Walked, bounds_of, building_truth, gap
 from benchmarks.changes.truth_json import from_json, to_json
+from benchmarks.changes.worlds.patrols import FIRST_NS, patrols
 from tests.benchmarks.changes.making import S, change, square, truth
 
 DAY_NS = 86_400 * S
@@ -20,7 +19,7 @@ def day(number: int) -> int:
 
 @pytest.fixture(scope="module")
 def building():
-    return building_truth(DAYS)
+    return building_truth(patrols())
 
 
 def test_every_change_has_its_kind(building):
@@ -55,8 +54,8 @@ def test_on_quiet_days_nothing_changed_but_the_door(building):
 
 
 def test_a_shorter_truth_leaves_out_what_changes_later():
-    assert {c.what for c in building_truth(3).changes} == {"door"}
-    assert "pallet" in {c.what for c in building_truth(6).changes}
+    assert {c.what for c in building_truth(patrols(3)).changes} == {"door"}
+    assert "pallet" in {c.what for c in building_truth(patrols(6)).changes}
 
 
 def test_the_json_reads_back_as_it_was(building):

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.changes.building import LANE
-from benchmarks.changes.patrols import patrols
 from benchmarks.changes.visits import Pace, offered_scans, paces
+from benchmarks.changes.worlds.building import LANE
+from benchmarks.changes.worlds.patrols import patrols
 from tests.benchmarks.changes.making import S
 from tests.cli.program import timemap
 from timemap_cli.spans import Span

@@ -1,18 +1,27 @@
-"""The twelve patrols: when each begins, how wrong its localisation is, who walks; and their recordings."""
+"""The twelve patrols: when each begins, which way it goes, how wrong its localisation is, who walks."""
 
-import shutil
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from rosbags.rosbag2 import StoragePlugin
 
-from benchmarks.changes.building import DAYS, DOORWAYS, NORTH, SOUTH, WIDTH, building, morning, patrol
+from benchmarks.changes.worlds.building import (
+    DAYS,
+    DOORWAYS,
+    NORTH,
+    SOUTH,
+    SPEED,
+    TURN_RATE,
+    WIDTH,
+    building,
+    morning,
+    route,
+)
+from benchmarks.changes.worlds.clearance import Point
 from sample_logs.building import walk
 from sample_logs.drives import Drive, Rates
 from sample_logs.laser import Mount, Scanner
-from sample_logs.recorder import write_ros2_folder
+from sample_logs.robot import Motion, drive
 from sample_logs.world import Walk
 
 FIRST_NS = 1_709_510_400_000_000_000  # 2024-03-04 00:00 UTC, a Monday: day 1
@@ -37,6 +46,7 @@ class Patrol:
 
     day: int
     begins: float  # [s] since midnight before day 1
+    motion: Motion  # the robot's true way
     walks: tuple[Walk, ...]  # by the clock of the patrol
     map_offset: tuple[float, float, float]  # [m, m, rad]
 
@@ -53,26 +63,26 @@ class Patrol:
     def drive(self) -> Drive:
         """The recording's contents."""
         return Drive(
-            building(self.begins, self.walks), patrol(self.day), SCANNER, RATES, self.start_ns, self.day,
+            building(self.begins, self.walks), self.motion, SCANNER, RATES, self.start_ns, self.day,
             error_m=ERROR_M, error_rad=ERROR_RAD, map_offset=self.map_offset,
         )  # fmt: skip
 
 
-def patrols(days: int = DAYS) -> list[Patrol]:
-    """The first `days` patrols, in the order of their days."""
-    return [_patrol(day) for day in range(1, days + 1)]
+def patrols(days: int = DAYS, way: Callable[[int], list[Point]] = route) -> list[Patrol]:
+    """The first `days` patrols, in the order of their days; `way` gives each day's route."""
+    return [_patrol(day, drive(way(day), SPEED, TURN_RATE)) for day in range(1, days + 1)]
 
 
-def _patrol(day: int) -> Patrol:
+def _patrol(day: int, motion: Motion) -> Patrol:
     rng = np.random.Generator(np.random.PCG64([20, day]))
     begins = morning(day) + 9 * 3600.0 + round(float(rng.uniform(0, 3600)))
     offset = np.clip(rng.normal(size=3), -2, 2) * (OFFSET_M, OFFSET_M, OFFSET_RAD)
-    return Patrol(day, begins, _people(day, rng), (float(offset[0]), float(offset[1]), float(offset[2])))
+    shift = (float(offset[0]), float(offset[1]), float(offset[2]))
+    return Patrol(day, begins, motion, _people(motion, rng), shift)
 
 
-def _people(day: int, rng: np.random.Generator) -> tuple[Walk, ...]:
+def _people(motion: Motion, rng: np.random.Generator) -> tuple[Walk, ...]:
     """Two who walk along the corridor, and one who stands in a room for 16 s while the robot is there."""
-    motion = patrol(day)
     starts, speeds = rng.uniform(0, motion.duration - 30, 2), rng.uniform(0.8, 1.3, 3)
     room, place = STOPS[int(rng.integers(len(STOPS)))]
     x, side = DOORWAYS[room], SOUTH - 0.7 if place[1] < SOUTH else NORTH + 0.7
@@ -86,14 +96,3 @@ def _people(day: int, rng: np.random.Generator) -> tuple[Walk, ...]:
         walk("courier", starts[1], speeds[1], (0.4, lane), (WIDTH - 0.4, lane)),
         walk("colleague", begins, speeds[2], *inside, place, place, *inside[::-1][1:]),
     )
-
-
-def make(folder: Path, planned: Sequence[Patrol]) -> list[Path]:
-    """Write the recordings that `folder` does not hold yet; the paths of all, in order."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for one in planned:
-        path = folder / one.file
-        if not (path / "metadata.yaml").exists():
-            shutil.rmtree(path, ignore_errors=True)  # left behind by a run that was interrupted
-            write_ros2_folder(path, one.drive().events(), StoragePlugin.MCAP, compressed=True)
-    return [folder / one.file for one in planned]

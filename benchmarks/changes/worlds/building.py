@@ -17,7 +17,6 @@ from dataclasses import replace
 import numpy as np
 
 from sample_logs.rays import Floats
-from sample_logs.robot import Motion, drive
 from sample_logs.world import Thing, Walk, World, box, disc, wall
 
 WIDTH, DEPTH = 18.0, 11.0
@@ -128,8 +127,3 @@ def route(day: int) -> list[tuple[float, float]]:
 def _visit(room: str, inside_y: float, *corners: tuple[float, float]) -> list[tuple[float, float]]:
     x = DOORWAYS[room]
     return [(x, LANE), (x, inside_y), *corners, (x, inside_y), (x, LANE)]
-
-
-def patrol(day: int) -> Motion:
-    """The robot's true way on that day."""
-    return drive(route(day), SPEED, TURN_RATE)

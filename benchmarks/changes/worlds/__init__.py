@@ -1,0 +1,1 @@
+"""Simulated worlds whose changes are known, and the drives through them."""
