@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 
 from timemap_cli.changes.compare import compare
 from timemap_cli.changes.difference import Difference
+from timemap_cli.changes.rules import Rules
 from timemap_cli.errors import UsageError
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
@@ -43,7 +45,8 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
         asked = f"--level {' '.join(levels)} --at {at}"
         until_ns = _time_within(reader, result, "end" if at is None else at, asked)
         before, after = reader.estimates(slower, until_ns), reader.estimates(faster, until_ns)
-        difference = compare(reader.nodes, before, after, radius=reader.radius)
+        rules = Rules.of_level(is_fastest=faster == reader.levels[0])
+        difference = compare(reader.nodes, before, after, rules, radius=reader.radius)
         old_side, new_side = (ComparedSide(str(result), level, until_ns) for level in (slower, faster))
         warnings = _beyond(reader, result, until_ns)
         hint = (
@@ -59,7 +62,8 @@ def compare_times(result: Path, level: str, times: tuple[str, str]) -> Compariso
         asked = f"{result} --level {level}"
         earlier_ns, later_ns = sorted(_time_within(reader, result, time, asked) for time in times)
         before, after = reader.estimates(level, earlier_ns), reader.estimates(level, later_ns)
-        difference = compare(reader.nodes, before, after, radius=reader.radius, only_renewed=True)
+        rules = Rules.of_level(is_fastest=level == reader.levels[0])
+        difference = compare(reader.nodes, before, after, rules, radius=reader.radius, only_renewed=True)
         old_side, new_side = (ComparedSide(str(result), level, ns) for ns in (earlier_ns, later_ns))
         warnings = _beyond(reader, result, later_ns)
         hint = None if difference.nodes else _two_times(reader, result, level)
@@ -67,28 +71,30 @@ def compare_times(result: Path, level: str, times: tuple[str, str]) -> Compariso
 
 
 def compare_results(one: Path, other: Path, level: str) -> Comparison:
-    """The end of the result that ends earlier against the end of the other one; they must share nodes."""
+    """The end of the result that ends earlier against the end of the other one; both must lie in one map frame."""
     with ResultReader(one) as first, ResultReader(other) as second:
         pairs = [(one, first), (other, second)]
         for path, reader in pairs:
             require_level(reader, path, level)
         (old_path, old), (new_path, new) = sorted(pairs, key=lambda pair: pair[1].end_ns)
         _require_same_map(old_path, old, new_path, new)
-        before = old.estimates(level, None)
-        shared = _shared_nodes(old, new)
-        after = _renumbered(new.estimates(level, None), shared)
-        if not after:
+        numbers = _common_numbers(old.nodes, new.nodes)
+        nodes = [*old.nodes, *(n for i, n in enumerate(new.nodes) if numbers[i] >= len(old.nodes))]
+        before, after = old.estimates(level, None), _renumbered(new.estimates(level, None), numbers)
+        rules = Rules.of_level(is_fastest=level == old.levels[0])
+        difference = compare(nodes, before, after, rules, radius=old.radius)
+        if not difference.nodes:
             raise UsageError(
-                f"{old_path} and {new_path} share no nodes",
-                hint=f"timemap replay LOG... --nodes {old_path} -o ANOTHER.timemap.mcap",
+                f"{old_path} and {new_path} have looked at no common place",
+                hint="two results of one building, in one map frame",
             )
-        difference = compare(old.nodes, before, after, radius=old.radius)
         old_side, new_side = (
             ComparedSide(str(path), level, reader.end_ns)
             for path, reader in ((old_path, old), (new_path, new))
         )
-        alone = len(old.nodes) - len(set(shared.values())), len(new.nodes) - len(shared)
-        return Comparison(difference, tuple(old.nodes), old_side, new_side, alone)
+        shared = sum(number < len(old.nodes) for number in numbers)
+        alone = len(old.nodes) - shared, len(new.nodes) - shared
+        return Comparison(difference, nodes, old_side, new_side, alone)
 
 
 def newest_result(folder: Path) -> Path:
@@ -165,20 +171,16 @@ def _require_same_map(old_path: Path, old: ResultReader, new_path: Path, new: Re
             )
 
 
-def _shared_nodes(old: ResultReader, new: ResultReader) -> dict[int, int]:
-    """Number in `new` -> number in `old`, of the nodes that stand at the same place."""
+def _common_numbers(old: Sequence[Node], new: Sequence[Node]) -> list[int]:
+    """A number for each node of `new`: that of the old node at the same place, else one of its own after all old."""
 
     def cell(node: Node) -> tuple[int, int]:
         return round(node.x / _SAME_PLACE_M), round(node.y / _SAME_PLACE_M)
 
-    numbers = {cell(node): number for number, node in enumerate(old.nodes)}
-    found = ((number, numbers.get(cell(node))) for number, node in enumerate(new.nodes))
-    return {number: shared for number, shared in found if shared is not None}
+    known = {cell(node): number for number, node in enumerate(old)}
+    unused = count(len(old))
+    return [known[cell(node)] if cell(node) in known else next(unused) for node in new]
 
 
-def _renumbered(estimates: Mapping[int, Estimate], numbers: Mapping[int, int]) -> dict[int, Estimate]:
-    return {
-        numbers[node]: replace(estimate, node=numbers[node])
-        for node, estimate in estimates.items()
-        if node in numbers
-    }
+def _renumbered(estimates: Mapping[int, Estimate], numbers: Sequence[int]) -> dict[int, Estimate]:
+    return {numbers[node]: replace(estimate, node=numbers[node]) for node, estimate in estimates.items()}

@@ -46,9 +46,9 @@ class Places:
         """Width of an angle bin [rad]."""
         return 2 * np.pi / self.angle_bins
 
-    def points(self, row: int, bins: Ints, ranges: Floats) -> Floats:
-        """Ends of ranges [m] at the centres of a row's angle bins, (n, 2) [m] map frame."""
-        return np.asarray(self.centres[row] + ranges[:, None] * _directions(self.angle_bins)[bins])
+    def points(self, rows: int | Ints, bins: Ints, ranges: Floats) -> Floats:
+        """Ends of ranges (n,) [m] at the centres of angle bins (n,) of one row or of one each, (n, 2) [m] map frame."""
+        return np.asarray(self.centres[rows] + ranges[:, None] * _directions(self.angle_bins)[bins])
 
     def ends(self, ranges: Floats) -> Floats:
         """Ends of ranges (..., angle_bins) [m] as (..., angle_bins, 2) [m] from their node; NaN where there is none."""

@@ -1,4 +1,4 @@
-"""What counts as a change between two estimates."""
+"""What counts as a change between two sides."""
 
 from dataclasses import dataclass
 
@@ -28,10 +28,16 @@ class Rules:
     min_thing_bins: int = (
         5  # over all nodes: what stands near a path is seen by several, or by one in many bins
     )
-    vote_samples: int = 5  # a node that looked less often has no say about a neighbour's report
-    max_age_ns: int = (
-        3_600_000_000_000  # who last looked there an hour before may have seen another state of affairs
+    lately_ns: int = 600_000_000_000  # looks older by more than the newest one that could tell do not count
+    min_contested: float = (
+        0.25  # share of the looks from which a point may have changed: nodes turn one by one
     )
-    vote_share: float = 0.5  # of the nodes that can tell; to ask for two loses most, which only one node saw
+    agreement: float = 0.5  # share of all looks at a thing that must say so
+    max_age_ns: int = 3_600_000_000_000  # an angle bin not seen for an hour has no word on what is watched
     move_max_m: float = 1.0  # beyond a metre another thing of that shape is as likely
     move_shape_m: float = 0.1  # outlines farther apart than bin spacing and noise explain are two shapes
+
+    @classmethod
+    def of_level(cls, is_fastest: bool) -> "Rules":
+        """The rules for a level; the fastest one turns within a pass: if its nodes disagree, somebody walked by."""
+        return cls(agreement=0.75) if is_fastest else cls()

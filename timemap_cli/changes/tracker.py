@@ -9,16 +9,15 @@ The fastest level is quick to believe a passer-by. An event is reported when a s
 came back after it had been undone; until then it is only suspected, and forgotten when it goes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-import numpy as np
-
-from timemap_cli.changes.compare import compare
+from timemap_cli.changes.compare import news
 from timemap_cli.changes.difference import Change, Kind
 from timemap_cli.changes.events import Event, Transition, Turn
 from timemap_cli.changes.matching import best_match, overlap
 from timemap_cli.changes.rules import Rules
-from timemap_cli.changes.track import Track, side_of
+from timemap_cli.changes.sides import Side
+from timemap_cli.changes.track import Track
 from timemap_cli.changes.view import View
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
@@ -75,9 +74,8 @@ class Tracker:
         if view is None:
             return []
         found: list[Transition] = []
-        for level in reversed(self.levels):  # slower levels first: they know the outline better
-            for change in self._candidates(nodes, view, level):
-                found += self._sight(change, level)
+        for level, change in self._candidates(nodes, view):
+            found += self._sight(change, level)
         slowest = self.levels[-1]
         self._before |= view.estimates[slowest]
         for track in self._tracks:
@@ -85,17 +83,22 @@ class Tracker:
         self._tracks = [track for track in self._tracks if not track.is_over]
         return found + self._report()
 
-    def _candidates(self, nodes: Sequence[Node], view: View, level: str) -> list[Change]:
-        """Changes from the slowest level before this round to a level now."""
-        now = view.estimates[level]
-        before = {number: self._before[number] for number in now if number in self._before}
-        difference = compare(nodes, before, now, self._rules, radius=self._radius, only_renewed=True)
-        return [change for change in difference.changes if not self._was_so(change, view)]
-
-    def _was_so(self, change: Change, view: View) -> bool:
-        """Whether the nodes said before this round what the candidate says now: it was only seen from elsewhere."""
-        said = view.words_before(change.points, self._before, self._rules)
-        return int(side_of(change.kind) * said.sum(dtype=np.int64)) > 0
+    def _candidates(self, nodes: Sequence[Node], view: View) -> Iterator[tuple[str, Change]]:
+        """Changes from what the slowest level held before this round to each level now, slower levels first."""
+        before = {n: e for n, e in self._before.items() if view.has_in_reach(nodes[n])}
+        if not before:
+            return
+        held = Side.of(before, nodes, self._radius, self._rules)
+        for level in reversed(self.levels):  # slower levels know the outline better
+            rules = Rules.of_level(is_fastest=level == self.levels[0])
+            renewed = {
+                n: e
+                for n, e in view.estimates[level].items()
+                if n not in before or before[n].stamp_ns != e.stamp_ns
+            }
+            if renewed:
+                for change in news(held, Side.of(renewed, nodes, self._radius, rules), rules):
+                    yield level, change
 
     def _sight(self, change: Change, level: str) -> list[Transition]:
         """Put a candidate where it belongs: to what is watched there already, or to something new."""

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from timemap_cli.changes.rings import Floats, Ints, Places, Rings, place, stack
 from timemap_cli.changes.rules import Rules
 from timemap_cli.changes.sightings import Words, words
+from timemap_cli.model.elementary import lengths
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 
@@ -45,9 +46,7 @@ class View:
         """What each node (rows,) says of a surface at a level."""
         return words(points, self.rings[level], self.places, rules)
 
-    def words_before(self, points: Floats, before: Mapping[int, Estimate], rules: Rules) -> Words:
-        """What the nodes that have earlier estimates said of a surface by them."""
-        known = np.isin(self.places.numbers, list(before))
-        rows = self.places.numbers[known]
-        places = replace(self.places, numbers=rows, centres=self.places.centres[known])
-        return words(points, stack(before, rows.tolist()), places, rules)
+    def has_in_reach(self, node: Node) -> bool:
+        """Whether something that a node sees may be in sight of one of the renewed nodes."""
+        away = lengths(self.places.centres - np.array((node.x, node.y)))
+        return bool(away.min() <= 2 * self.places.radius)
