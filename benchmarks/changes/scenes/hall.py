@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.changes.days import compared, refusal
+from benchmarks.changes.maps import levels_of, walls_left
 from benchmarks.changes.places import Event, claims, places_of_changes, places_of_transitions, read_events
 from benchmarks.changes.recordings import folder_of, make, replayed, timemap_json
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.scores import Found, find
-from benchmarks.changes.table import claim_line
+from benchmarks.changes.table import claim_line, left_line
 from benchmarks.changes.truth import Truth, recorded, truth_of
 from benchmarks.changes.worlds import clearance, open_hall, patrols
 from benchmarks.changes.worlds.open_hall import Hall
@@ -56,7 +57,10 @@ def _layout(hall: Hall, made: Path, work: Work) -> tuple[str, list[Told | str]]:
         replayed([one], made / f"{one.name}.timemap.mcap", again=work.again).result for one in recordings
     ]
     told = [*_of_one_result(both.result, truth), *_of_two_results(apart, truth)]
-    return f"layout {hall.seed}, {_nodes(both.result, apart[0])}, {both.lost}", told
+    document = timemap_json("changes", str(both.result))
+    left = {level: walls_left(both.result, document, level) for level in levels_of(both.result)}
+    head = f"layout {hall.seed}, {_nodes(both.result, apart[0])}, {both.lost}"
+    return f"{head}\n  {left_line(left)}", told
 
 
 def _nodes(both: Path, first: Path) -> str:

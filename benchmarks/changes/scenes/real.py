@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.changes.days import compared, refusal
+from benchmarks.changes.maps import levels_of, walls_left
 from benchmarks.changes.places import VANISHED, Event, claims, places_of_changes, read_events
 from benchmarks.changes.recordings import Replayed, known_as, replayed, timemap_json
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.scores import find
-from benchmarks.changes.table import claim_line
+from benchmarks.changes.table import claim_line, left_line
 from benchmarks.changes.truth import Episode, Recorded, TrueChange, Truth
-from timemap_cli.results.reader import ResultReader
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +68,10 @@ def _corridor(corridor: Corridor, work: Work, data: Path) -> str:
     first, last = recordings[0], recordings[-1]
     ends = ("--between", str(first.end_ns), str(last.end_ns))
     told: dict[str, list[Event] | str] = {"changes": _events(all_runs.result)}
-    for level in _levels(all_runs):
+    for level in levels_of(all_runs.result):
         told[f"diff --between, {level}"] = _differences(level, last, str(all_runs.result), *ends)
     told["diff of two results, mid"] = _differences("mid", last, *(str(one.result) for one in apart))
-    return "\n".join([f"{corridor.name}: {all_runs.lost}", *_lines(told, truth)])
+    return "\n".join([f"{corridor.name}: {all_runs.lost}", _left(all_runs.result), *_lines(told, truth)])
 
 
 def expected(table: str, since_ns: int) -> tuple[TrueChange, ...]:
@@ -114,18 +114,19 @@ def _quiet(one: Quiet, work: Work, data: Path) -> str:
     told: dict[str, list[Event] | str] = {"changes": _events(whole.result)}
     for other in ("mid", "short"):
         told[f"diff --level long {other}"] = _differences("long", here, result, other_level=other)
-    for level in _levels(whole):
+    for level in levels_of(whole.result):
         told[f"diff --between middle and end, {level}"] = _differences(
             level, here, result, "--between", str(middle_ns), str(end_ns)
         )
     told["diff of its halves, mid"] = _differences("mid", here, *(str(half.result) for half in halves))
     nothing = Truth((here,), ())
-    return "\n".join([f"{one.name}: {whole.lost}", *_lines(told, nothing)])
+    return "\n".join([f"{one.name}: {whole.lost}", _left(whole.result), *_lines(told, nothing)])
 
 
-def _levels(one: Replayed) -> Sequence[str]:
-    with ResultReader(one.result) as reader:
-        return reader.levels
+def _left(result: Path) -> str:
+    document = timemap_json("changes", str(result))
+    left = {level: walls_left(result, document, level) for level in levels_of(result)}
+    return f"  {left_line(left)}"
 
 
 def _events(result: Path) -> list[Event]:
