@@ -4,7 +4,7 @@ Recordings are made if their folder does not hold them yet, replayed, and what i
 truth, scene by scene. The program measured is the `timemap` beside the Python that runs this.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import click
@@ -17,7 +17,7 @@ from benchmarks.changes.scenes.real import real_recordings
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.worlds.pallet_hall import DAYS
 
-SCENES: Mapping[str, Callable[[Work], str]] = {
+SCENES: Mapping[str, Callable[[Work], Iterator[str]]] = {
     "building": same_lanes,
     "lanes": other_lanes,
     "far_lanes": far_lanes,
@@ -48,7 +48,8 @@ def main(
     work = Work(folder.resolve(), quick, again, pallet_days, data.resolve() if data else None)
     for name in scenes or SCENES:
         click.echo(f"== {name}\n")
-        click.echo(SCENES[name](work) + "\n")
+        for part in SCENES[name](work):
+            click.echo(part + "\n")
 
 
 if __name__ == "__main__":

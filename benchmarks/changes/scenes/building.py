@@ -1,6 +1,6 @@
 """The building on twelve days: patrols that always drive the same way, or each day another (`lanes`, `far_lanes`)."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -27,19 +27,19 @@ QUICK_DAYS = 6  # the door, the furniture and the pallet's coming
 _LANES = (world, patrols, clearance, lanes)
 
 
-def same_lanes(work: Work) -> str:
+def same_lanes(work: Work) -> Iterator[str]:
     """Figures of patrols that all go the same way."""
-    return _measured(work, recordings_folder(work.folder), world.route)
+    yield _measured(work, recordings_folder(work.folder), world.route)
 
 
-def other_lanes(work: Work) -> str:
+def other_lanes(work: Work) -> Iterator[str]:
     """Figures of patrols that go another way each day."""
-    return _measured(work, folder_of(work.folder, "lanes", _LANES), lanes.LANES.route)
+    yield _measured(work, folder_of(work.folder, "lanes", _LANES), lanes.LANES.route)
 
 
-def far_lanes(work: Work) -> str:
+def far_lanes(work: Work) -> Iterator[str]:
     """The same of ways that lie as far apart as there is room."""
-    return _measured(work, folder_of(work.folder, "far_lanes", _LANES), lanes.FAR_LANES.route)
+    yield _measured(work, folder_of(work.folder, "far_lanes", _LANES), lanes.FAR_LANES.route)
 
 
 def recordings_folder(folder: Path) -> Path:

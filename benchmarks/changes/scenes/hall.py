@@ -1,6 +1,6 @@
 """Open halls, driven round and then across: what of the furniture that was moved in between is told."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,16 +35,16 @@ class Told:
         return [told.count(piece) for piece in pieces]
 
 
-def open_halls(work: Work) -> str:
-    """Figures of all layouts."""
+def open_halls(work: Work) -> Iterator[str]:
+    """Figures of each layout, then of all together."""
     made = folder_of(work.folder, "hall", (open_hall, clearance, patrols))
     layouts = open_hall.LAYOUTS[: QUICK_LAYOUTS if work.quick else None]
-    parts, told = [], []
+    told = []
     for seed in layouts:
         head, here = _layout(open_hall.hall(seed), made / f"layout_{seed}", work)
-        parts.append(f"{head}\n{table(here)}")
         told.append(here)
-    return "\n\n".join([*parts, together(told)])
+        yield f"{head}\n{table(here)}"
+    yield together(told)
 
 
 def _layout(hall: Hall, made: Path, work: Work) -> tuple[str, list[Told | str]]:

@@ -1,6 +1,6 @@
 """Halls whose pallets are redrawn every night: what is told of them from day to day, and the maps of the last day."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -22,12 +22,13 @@ from timemap_cli.results.reader import ResultReader
 QUICK_WORLDS, QUICK_DAYS = ("wh50",), 4
 
 
-def pallet_halls(work: Work) -> str:
-    """Figures of all worlds."""
+def pallet_halls(work: Work) -> Iterator[str]:
+    """Figures of each world."""
     worlds = QUICK_WORLDS if work.quick else pallet_hall.WORLDS
     days = QUICK_DAYS if work.quick else work.pallet_days
     made = folder_of(work.folder, "pallets", (pallet_hall, clearance, patrols))
-    return "\n\n".join(_world(world, days, made / f"{world}_{days}", work) for world in worlds)
+    for world in worlds:
+        yield _world(world, days, made / f"{world}_{days}", work)
 
 
 def _world(world: str, days: int, made: Path, work: Work) -> str:

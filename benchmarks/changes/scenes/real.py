@@ -4,7 +4,7 @@ They are no part of the project: the scene measures those that are in the folder
 """
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,13 +46,20 @@ QUIET = (
 )
 
 
-def real_recordings(work: Work) -> str:
+def real_recordings(work: Work) -> Iterator[str]:
     """Figures of the recordings that are there."""
-    if work.data is None:
-        return "not measured: --data names the folder of the recordings"
-    parts = [_corridor(WEAN, work, work.data)] if (work.data / WEAN.expected).exists() else []
-    parts += [_quiet(one, work, work.data) for one in QUIET if (work.data / one.file).exists()]
-    return "\n\n".join(parts) or f"not measured: {work.data} holds none of the recordings"
+    data = work.data
+    if data is None:
+        yield "not measured: --data names the folder of the recordings"
+        return
+    quiet = [one for one in QUIET if (data / one.file).exists()]
+    corridors = [one for one in (WEAN,) if (data / one.expected).exists()]
+    if not quiet and not corridors:
+        yield f"not measured: {data} holds none of the recordings"
+    for corridor in corridors:
+        yield _corridor(corridor, work, data)
+    for one in quiet:
+        yield _quiet(one, work, data)
 
 
 def _corridor(corridor: Corridor, work: Work, data: Path) -> str:
