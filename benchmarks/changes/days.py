@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from benchmarks.changes.places import Claim, Event, claims, moved_from, places_of_transitions
+from benchmarks.changes.places import Claim, Event, Place, claims, moved_from, places_of_transitions
 from benchmarks.changes.recordings import timemap_json
 from benchmarks.changes.scores import Found, false_area, find, seen_in
 from benchmarks.changes.truth import Recorded, Truth
@@ -20,7 +20,7 @@ from benchmarks.changes.truth import Recorded, Truth
 class Days:
     """What one level's differences from day to day are worth."""
 
-    level: str
+    level: str  # with a star where only the turns that last its half-life are to be told
     found: Found  # places of transitions, told on whatever day
     at_once: int  # of these, told on the first patrol after
     quiet_false: int
@@ -29,15 +29,16 @@ class Days:
     compared: float  # share of all angle bins of all nodes, mean over the pairs of days
 
 
-def day_by_day(result: Path, level: str, truth: Truth, nodes: int) -> Days:
-    """Compare each day with the one before at one level; `nodes` is the number of all nodes."""
+def day_by_day(result: Path, level: str, truth: Truth, nodes: int) -> tuple[list[Event], list[float]]:
+    """What each day differs in from the one before at one level, and the share of bins compared on each.
+
+    `nodes` is the number of all nodes.
+    """
     told = [
         compared(level, after, nodes, str(result), "--between", str(before.end_ns), str(after.end_ns))
         for before, after in pairwise(truth.recordings)
     ]
-    return judged(
-        [event for events, _ in told for event in events], level, truth, [share for _, share in told]
-    )
+    return [event for events, _ in told for event in events], [share for _, share in told]
 
 
 def compared(
@@ -59,15 +60,25 @@ def refusal(error: RuntimeError) -> str:
     return re.sub(r"(?<!\S)/\S*/", "", first.rpartition("error: ")[2])
 
 
-def judged(events: Sequence[Event], level: str, truth: Truth, shares: Sequence[float]) -> Days:
-    """The worth of one level's differences, given as events that nobody adopts."""
-    found = find(claims(events), places_of_transitions(truth), truth)
+def judged(
+    events: Sequence[Event], level: str, truth: Truth, shares: Sequence[float],
+    lasting: Sequence[Place] | None = None,
+) -> Days:  # fmt: skip
+    """The worth of one level's differences, given as events that nobody adopts.
+
+    With `lasting` places only these are to be told, and telling the others is neither right nor false.
+    """
+    every = places_of_transitions(truth)
+    places = every if lasting is None else lasting
+    found = find(claims(events), places, truth, [place for place in every if place not in places])
     quiet = truth.quiet()
     quiet_false = seen_in(found.false, quiet)
+    name = level if lasting is None else f"{level}*"
+    at_once = sum(_first_after(claim, place.since_ns, truth) for place, claim in found.pairs)
+    told = [claim for claim in found.claims if claim not in found.people]
     return Days(
-        level, found, sum(_first_after(c, p.since_ns, truth) for p, c in found.pairs),
-        len(quiet_false), false_area(quiet_false, found.places), false_area(found.claims, found.places),
-        sum(shares) / len(shares),
+        name, found, at_once, len(quiet_false), false_area(quiet_false, found.places),
+        false_area(told, found.places), sum(shares) / len(shares),
     )  # fmt: skip
 
 

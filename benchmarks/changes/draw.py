@@ -1,7 +1,7 @@
 """Draw a world, its truth and one recording's scans: `python -m benchmarks.changes.draw OUT.png [WORLD] [--day 6]`.
 
-Needs matplotlib. WORLD is building, lanes, far_lanes or hall with a layout's number (hall1). The scans lie where the
-robot's localisation puts them.
+Needs matplotlib. WORLD is building, lanes, far_lanes, hall with a layout's number (hall1) or a pallet hall
+(wh50). The scans lie where the robot's localisation puts them.
 """
 
 from collections.abc import Sequence

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from benchmarks.changes.truth import TrueChange, building_truth, recorded, truth_of
-from benchmarks.changes.worlds import building
+from benchmarks.changes.worlds import building, pallet_hall
 from benchmarks.changes.worlds.clearance import Point
 from benchmarks.changes.worlds.lanes import FAR_LANES, LANES
 from benchmarks.changes.worlds.open_hall import LAYOUTS, hall
@@ -16,7 +16,7 @@ _WAYS: dict[str, Callable[[int], list[Point]]] = {
     "lanes": LANES.route,
     "far_lanes": FAR_LANES.route,
 }
-WORLDS = (*_WAYS, *(f"hall{seed}" for seed in LAYOUTS))
+WORLDS = (*_WAYS, *(f"hall{seed}" for seed in LAYOUTS), *pallet_hall.WORLDS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +32,14 @@ def picture_of(world: str, day: int) -> Picture:
     """The picture of one of `WORLDS`; IndexError where it has no such day."""
     if world in _WAYS:
         planned = patrols(way=_WAYS[world])
-        drive, truth = planned[day - 1].drive(), building_truth(planned)
+        drives, changes = [one.drive() for one in planned], building_truth(planned).changes
+    elif world in pallet_hall.WORLDS:
+        drives, changes = list(pallet_hall.drives(world).values()), ()
     else:
         layout = hall(int(world.removeprefix("hall")))
-        drives = layout.drives()
-        drive = list(drives.values())[day - 1]
-        truth = truth_of([recorded(n, i, d) for i, (n, d) in enumerate(drives.items(), 1)], layout.things)
-    return Picture(f"{world}: all changes, and the scans of day {day}", drive, truth.changes)
+        runs = layout.drives()
+        drives = list(runs.values())
+        known = [recorded(name, run, one) for run, (name, one) in enumerate(runs.items(), 1)]
+        changes = truth_of(known, layout.things).changes
+    drive = drives[day - 1]
+    return Picture(f"{world}: all changes, and the scans of day {day}", drive, changes)

@@ -22,7 +22,7 @@ class Found:
     places: tuple[Place, ...]
     claims: tuple[Claim, ...]
     match: Mapping[int, int]  # index of the claim by index of the place
-    people: tuple[Claim, ...]  # neither right nor false
+    people: tuple[Claim, ...]  # and what need not be told: neither right nor false
 
     @property
     def missed(self) -> list[Place]:
@@ -63,12 +63,15 @@ class Found:
         return [(self.places[p], self.claims[c]) for p, c in self.match.items()]
 
 
-def find(told: Sequence[Claim], places: Sequence[Place], truth: Truth) -> Found:
-    """Match claims with places; a claim of people counts as such only where it tells no place."""
+def find(told: Sequence[Claim], places: Sequence[Place], truth: Truth, spared: Sequence[Place] = ()) -> Found:
+    """Match claims with places; a claim of people counts as such only where it tells no place.
+
+    What fits one of the `spared` places need not be told: it is neither right nor false.
+    """
     pairs = match(told, places)
     rest = [c for i, c in enumerate(told) if i not in set(pairs.values())]
-    people = tuple(c for c in rest if of_people(c.event, truth))
-    return Found(tuple(places), tuple(told), pairs, people)
+    neither = [c for c in rest if of_people(c.event, truth) or any(fits(c, place) for place in spared)]
+    return Found(tuple(places), tuple(told), pairs, tuple(neither))
 
 
 def false_area(told: Sequence[Claim], places: Sequence[Place]) -> float:

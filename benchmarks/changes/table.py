@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 
 from benchmarks.changes.days import Days
+from benchmarks.changes.maps import MapScore, mean_score
 from benchmarks.changes.places import Claim, Place
 from benchmarks.changes.scores import MOST_HALF_LIVES, Adoption, Found, Score
 from benchmarks.changes.truth import Recorded
@@ -57,11 +58,34 @@ def days_table(days: Sequence[Days], unknown: Mapping[str, float]) -> str:
         lines.append(
             f"  {d.level:8}{told:>9}{d.at_once:>9}{_share(d.found.recall):>8}{_share(d.found.precision):>11}"
             f"{d.found.f1:>6.2f}{len(d.found.false):>7}{len(d.found.again):>7}{d.quiet_false:>7}{d.area:>9.2f}"
-            f"{d.compared:>10.1%}{unknown[d.level]:>9.1%}"
+            f"{d.compared:>10.1%}{unknown[d.level.rstrip('*')]:>9.1%}"
         )
+    if any(d.level.endswith("*") for d in days):
+        lines.append("  * only turns that last the level's half-life; the others are neither right nor false")
     for d in days:
         lines += [f"  {d.level}:", *_missed(d.found.missed), *_false(d.found)]
     return "\n".join(lines)
+
+
+def maps_table(days: Mapping[int, Mapping[str, MapScore]], left: Mapping[str, int]) -> str:
+    """Each level's map on some days and in the mean of them; `left` counts cells inside what vanished."""
+    lines = [f"maps{'':22}{'precision':>11}{'recall':>8}{'ghosts m2':>11}{'in vanished':>13}"]
+    for level, cells in left.items():
+        scores = [day[level] for day in days.values()]
+        rows = [(f"day {day}", score) for day, score in zip(days, scores, strict=True)]
+        if len(rows) > 1:
+            rows.append((f"mean of {', '.join(map(str, days))}", mean_score(scores)))
+        for i, (when, score) in enumerate(rows):
+            last = f"{cells:>13}" if i == len(rows) - 1 else ""
+            lines.append(
+                f"  {level:8}{when:16}{score.precision:>11.3f}{score.recall:>8.3f}{score.ghosts:>11.3f}{last}"
+            )
+    return "\n".join(lines)
+
+
+def left_line(left: Mapping[str, int]) -> str:
+    """Cells of each level's last map inside what vanished."""
+    return "map cells inside vanished, adopted events: " + ", ".join(f"{k} {n}" for k, n in left.items())
 
 
 def recordings_table(recordings: Sequence[Recorded]) -> str:

@@ -1,42 +1,45 @@
 """The building on twelve days: patrols that always drive the same way, or each day another (`lanes`, `far_lanes`)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.changes.days import day_by_day
-from benchmarks.changes.places import read_events
+from benchmarks.changes.days import Days, day_by_day, judged
+from benchmarks.changes.lasting import lasting
+from benchmarks.changes.maps import MapScore, maps_of_day, walls_left
+from benchmarks.changes.places import places_of_transitions, read_events
 from benchmarks.changes.recordings import Replayed, folder_of, make, replayed, timemap_json
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.scores import score
-from benchmarks.changes.table import days_table, events_table, recordings_table
+from benchmarks.changes.table import days_table, events_table, maps_table, recordings_table
 from benchmarks.changes.truth import Truth, building_truth
 from benchmarks.changes.truth_json import from_json, to_json
-from benchmarks.changes.visits import paces
+from benchmarks.changes.visits import Pace, paces
 from benchmarks.changes.worlds import building as world
 from benchmarks.changes.worlds import clearance, lanes, patrols
 from benchmarks.changes.worlds.clearance import Point
 from benchmarks.changes.worlds.patrols import Patrol
 from timemap_cli.results.reader import ResultReader
 
+MAP_DAYS = (5, 8, 12)  # the day after the furniture was moved, that after the pallet went, and the last
 QUICK_DAYS = 6  # the door, the furniture and the pallet's coming
 _LANES = (world, patrols, clearance, lanes)
 
 
-def same_lanes(work: Work) -> str:
+def same_lanes(work: Work) -> Iterator[str]:
     """Figures of patrols that all go the same way."""
-    return _measured(work, recordings_folder(work.folder), world.route)
+    yield _measured(work, recordings_folder(work.folder), world.route)
 
 
-def other_lanes(work: Work) -> str:
+def other_lanes(work: Work) -> Iterator[str]:
     """Figures of patrols that go another way each day."""
-    return _measured(work, folder_of(work.folder, "lanes", _LANES), lanes.LANES.route)
+    yield _measured(work, folder_of(work.folder, "lanes", _LANES), lanes.LANES.route)
 
 
-def far_lanes(work: Work) -> str:
+def far_lanes(work: Work) -> Iterator[str]:
     """The same of ways that lie as far apart as there is room."""
-    return _measured(work, folder_of(work.folder, "far_lanes", _LANES), lanes.FAR_LANES.route)
+    yield _measured(work, folder_of(work.folder, "far_lanes", _LANES), lanes.FAR_LANES.route)
 
 
 def recordings_folder(folder: Path) -> Path:
@@ -64,14 +67,31 @@ def report(replay: Replayed, truth: Truth, planned: Sequence[Patrol]) -> str:
     """All figures of a result of patrols."""
     result = replay.result
     with ResultReader(result) as reader:
-        nodes = len(reader.nodes)
+        nodes = [(node.x, node.y) for node in reader.nodes]
         unknown = {level: unknown_share(reader, level) for level in reader.levels}
-    parts = [recordings_table(truth.recordings) + f", {nodes} nodes, {replay.lost}"]
-    try:
-        document = timemap_json("changes", str(result))
-    except RuntimeError as error:
-        parts.append(f"no events: {error}")
-    else:
-        parts.append(events_table(score(read_events(document), truth, paces(result, planned))))
-    days = [day_by_day(result, level, truth, nodes) for level in unknown]
-    return "\n\n".join([*parts, days_table(days, unknown)])
+    document, pace = timemap_json("changes", str(result)), paces(result, planned)
+    left = {level: walls_left(result, document, level) for level in unknown}
+    return "\n\n".join([
+        recordings_table(truth.recordings) + f", {len(nodes)} nodes, {replay.lost}",
+        events_table(score(read_events(document), truth, pace)),
+        days_table(_days(result, truth, pace, nodes), unknown),
+        maps_table(_maps(result, planned), left),
+    ])  # fmt: skip
+
+
+def _days(
+    result: Path, truth: Truth, pace: Mapping[str, Pace], nodes: Sequence[tuple[float, float]]
+) -> list[Days]:
+    """Each level's differences from day to day; the slowest's once more with what lasts its half-life alone."""
+    days = []
+    for level in pace:
+        told = day_by_day(result, level, truth, len(nodes))
+        days.append(judged(told[0], level, truth, told[1]))
+    lasts = lasting(places_of_transitions(truth), pace[level], nodes, world.walls(), truth.end_ns)
+    return [*days, judged(told[0], level, truth, told[1], lasts)]
+
+
+def _maps(result: Path, planned: Sequence[Patrol]) -> dict[int, dict[str, MapScore]]:
+    """Each level's map at the end of some days."""
+    drives = [one.drive() for one in planned]
+    return {day: maps_of_day(result, drives, day) for day in MAP_DAYS if day <= len(drives)}

@@ -1,15 +1,16 @@
 """Open halls, driven round and then across: what of the furniture that was moved in between is told."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.changes.days import compared, refusal
+from benchmarks.changes.maps import levels_of, walls_left
 from benchmarks.changes.places import Event, claims, places_of_changes, places_of_transitions, read_events
 from benchmarks.changes.recordings import folder_of, make, replayed, timemap_json
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.scores import Found, find
-from benchmarks.changes.table import claim_line
+from benchmarks.changes.table import claim_line, left_line
 from benchmarks.changes.truth import Truth, recorded, truth_of
 from benchmarks.changes.worlds import clearance, open_hall, patrols
 from benchmarks.changes.worlds.open_hall import Hall
@@ -34,16 +35,16 @@ class Told:
         return [told.count(piece) for piece in pieces]
 
 
-def open_halls(work: Work) -> str:
-    """Figures of all layouts."""
+def open_halls(work: Work) -> Iterator[str]:
+    """Figures of each layout, then of all together."""
     made = folder_of(work.folder, "hall", (open_hall, clearance, patrols))
     layouts = open_hall.LAYOUTS[: QUICK_LAYOUTS if work.quick else None]
-    parts, told = [], []
+    told = []
     for seed in layouts:
         head, here = _layout(open_hall.hall(seed), made / f"layout_{seed}", work)
-        parts.append(f"{head}\n{table(here)}")
         told.append(here)
-    return "\n\n".join([*parts, together(told)])
+        yield f"{head}\n{table(here)}"
+    yield together(told)
 
 
 def _layout(hall: Hall, made: Path, work: Work) -> tuple[str, list[Told | str]]:
@@ -56,7 +57,10 @@ def _layout(hall: Hall, made: Path, work: Work) -> tuple[str, list[Told | str]]:
         replayed([one], made / f"{one.name}.timemap.mcap", again=work.again).result for one in recordings
     ]
     told = [*_of_one_result(both.result, truth), *_of_two_results(apart, truth)]
-    return f"layout {hall.seed}, {_nodes(both.result, apart[0])}, {both.lost}", told
+    document = timemap_json("changes", str(both.result))
+    left = {level: walls_left(both.result, document, level) for level in levels_of(both.result)}
+    head = f"layout {hall.seed}, {_nodes(both.result, apart[0])}, {both.lost}"
+    return f"{head}\n  {left_line(left)}", told
 
 
 def _nodes(both: Path, first: Path) -> str:

@@ -4,18 +4,18 @@ They are no part of the project: the scene measures those that are in the folder
 """
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.changes.days import compared, refusal
+from benchmarks.changes.maps import levels_of, walls_left
 from benchmarks.changes.places import VANISHED, Event, claims, places_of_changes, read_events
 from benchmarks.changes.recordings import Replayed, known_as, replayed, timemap_json
 from benchmarks.changes.scenes.work import Work
 from benchmarks.changes.scores import find
-from benchmarks.changes.table import claim_line
+from benchmarks.changes.table import claim_line, left_line
 from benchmarks.changes.truth import Episode, Recorded, TrueChange, Truth
-from timemap_cli.results.reader import ResultReader
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +46,20 @@ QUIET = (
 )
 
 
-def real_recordings(work: Work) -> str:
+def real_recordings(work: Work) -> Iterator[str]:
     """Figures of the recordings that are there."""
-    if work.data is None:
-        return "not measured: --data names the folder of the recordings"
-    parts = [_corridor(WEAN, work, work.data)] if (work.data / WEAN.expected).exists() else []
-    parts += [_quiet(one, work, work.data) for one in QUIET if (work.data / one.file).exists()]
-    return "\n\n".join(parts) or f"not measured: {work.data} holds none of the recordings"
+    data = work.data
+    if data is None:
+        yield "not measured: --data names the folder of the recordings"
+        return
+    quiet = [one for one in QUIET if (data / one.file).exists()]
+    corridors = [one for one in (WEAN,) if (data / one.expected).exists()]
+    if not quiet and not corridors:
+        yield f"not measured: {data} holds none of the recordings"
+    for corridor in corridors:
+        yield _corridor(corridor, work, data)
+    for one in quiet:
+        yield _quiet(one, work, data)
 
 
 def _corridor(corridor: Corridor, work: Work, data: Path) -> str:
@@ -68,10 +75,10 @@ def _corridor(corridor: Corridor, work: Work, data: Path) -> str:
     first, last = recordings[0], recordings[-1]
     ends = ("--between", str(first.end_ns), str(last.end_ns))
     told: dict[str, list[Event] | str] = {"changes": _events(all_runs.result)}
-    for level in _levels(all_runs):
+    for level in levels_of(all_runs.result):
         told[f"diff --between, {level}"] = _differences(level, last, str(all_runs.result), *ends)
     told["diff of two results, mid"] = _differences("mid", last, *(str(one.result) for one in apart))
-    return "\n".join([f"{corridor.name}: {all_runs.lost}", *_lines(told, truth)])
+    return "\n".join([f"{corridor.name}: {all_runs.lost}", _left(all_runs.result), *_lines(told, truth)])
 
 
 def expected(table: str, since_ns: int) -> tuple[TrueChange, ...]:
@@ -114,18 +121,19 @@ def _quiet(one: Quiet, work: Work, data: Path) -> str:
     told: dict[str, list[Event] | str] = {"changes": _events(whole.result)}
     for other in ("mid", "short"):
         told[f"diff --level long {other}"] = _differences("long", here, result, other_level=other)
-    for level in _levels(whole):
+    for level in levels_of(whole.result):
         told[f"diff --between middle and end, {level}"] = _differences(
             level, here, result, "--between", str(middle_ns), str(end_ns)
         )
     told["diff of its halves, mid"] = _differences("mid", here, *(str(half.result) for half in halves))
     nothing = Truth((here,), ())
-    return "\n".join([f"{one.name}: {whole.lost}", *_lines(told, nothing)])
+    return "\n".join([f"{one.name}: {whole.lost}", _left(whole.result), *_lines(told, nothing)])
 
 
-def _levels(one: Replayed) -> Sequence[str]:
-    with ResultReader(one.result) as reader:
-        return reader.levels
+def _left(result: Path) -> str:
+    document = timemap_json("changes", str(result))
+    left = {level: walls_left(result, document, level) for level in levels_of(result)}
+    return f"  {left_line(left)}"
 
 
 def _events(result: Path) -> list[Event]:

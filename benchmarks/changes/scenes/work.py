@@ -11,4 +11,5 @@ class Work:
     folder: Path  # of all recordings and results
     quick: bool = False  # fewer days or layouts
     again: bool = False  # replay anew what has been replayed before
+    pallet_days: int = 10  # of each pallet hall
     data: Path | None = None  # where real recordings are

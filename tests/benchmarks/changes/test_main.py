@@ -1,7 +1,9 @@
 """The whole benchmark on its first two days: the door opens, nothing else changes."""
 
 import pytest
+from click.testing import CliRunner
 
+from benchmarks.changes.__main__ import SCENES, main
 from benchmarks.changes.recordings import make, replayed
 from benchmarks.changes.scenes.building import recordings_folder, report, unknown_share
 from benchmarks.changes.truth import building_truth
@@ -31,3 +33,14 @@ def test_little_is_unknown_after_two_patrols(result):
 def test_recordings_of_the_same_scripts_stand_in_the_same_folder(tmp_path):
     assert recordings_folder(tmp_path) == recordings_folder(tmp_path)
     assert recordings_folder(tmp_path).parent == tmp_path
+
+
+def test_scenes_are_chosen_by_name(tmp_path):
+    ran = CliRunner().invoke(
+        main, ["--scene", "real", "--folder", str(tmp_path)], env={"TIMEMAP_RECORDINGS": None}
+    )
+    assert ran.exit_code == 0
+    assert ran.output.split("\n\n")[0] == "== real"
+    assert "not measured" in ran.output
+    assert set(SCENES) == {"building", "lanes", "far_lanes", "hall", "pallets", "real"}
+    assert CliRunner().invoke(main, ["--scene", "none"]).exit_code == 2
