@@ -15,7 +15,7 @@ from timemap_cli.checks.taken import taken
 from timemap_cli.checks.tolerances import defaults
 from timemap_cli.checks.verdict import CheckedCase, Verdict
 from timemap_cli.config import Settings, load
-from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.errors import TimemapError, UsageError, as_expected
 from timemap_cli.logs.recordings import open_recordings
 from timemap_cli.logs.survey import survey
 from timemap_cli.model.nodes import Node
@@ -24,6 +24,8 @@ from timemap_cli.results.atomic_file import AtomicFile
 from timemap_cli.results.container import is_result
 from timemap_cli.results.reader import ResultReader
 from timemap_cli.stages import Observing
+
+Look = Callable[[ResultReader, Snapshot, Verdict], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +56,7 @@ class Updated:
 def check(
     one: Check,
     progress: Progress | None = None,
-    look: Callable[[ResultReader, Snapshot, Verdict], None] | None = None,
+    look: Look | None = None,
 ) -> CheckedCase:
     """Compare with the baseline; recordings are replayed with the baseline's nodes.
 
@@ -97,12 +99,17 @@ def update(one: Check, progress: Progress | None = None) -> Updated:
     return Updated(one.baseline, found, _against(old, found, one), *_trouble(summary))
 
 
-def checked(one: Check) -> CheckedCase:
-    """The same as `check`; what goes wrong becomes a case without a verdict."""
+def checked(one: Check, progress: Progress | None = None, look: Look | None = None) -> CheckedCase:
+    """The same as `check`; what goes wrong, whatever it is, becomes a case without a verdict."""
     try:
-        return check(one)
-    except TimemapError as error:
-        return CheckedCase(one.name, str(one.baseline), None, error)
+        return check(one, progress, look)
+    except Exception as error:  # noqa: BLE001 - the other checks of a suite, and their report, do not suffer from it
+        return without_verdict(one, as_expected(error))
+
+
+def without_verdict(one: Check, error: TimemapError) -> CheckedCase:
+    """A check that came to no verdict."""
+    return CheckedCase(one.name, str(one.baseline), None, error)
 
 
 def _against(old: Baseline | None, found: Snapshot, one: Check) -> Verdict | None:

@@ -125,7 +125,8 @@ def _time_within(reader: ResultReader, result: Path, time: str, asked: str) -> i
     if stamp_ns < reader.start_ns:
         span = f"from {format_time(reader.start_ns)} to {format_time(reader.end_ns)}"
         hint, before = "+10s or end-5s, counted from these", ""
-        if (name := reader.resumed_from) is not None:
+        if (earlier := reader.resumed_from) is not None:
+            name = earlier["name"]
             hint, before = (
                 f"timemap diff {result.with_name(name)} {asked}\n{hint}",
                 f", it goes on from {name}",

@@ -11,7 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, shown
 from timemap_cli.setting_kinds import Frame, Kind, Number, OneOf, Seconds, SpanOf, Text, Topics
 from timemap_cli.spans import Span
 from timemap_cli.yaml_files import parsed_yaml, read_yaml
@@ -206,7 +206,7 @@ def _updated(target: Any, values: Any, place: str, path: str = "") -> Any:
     changes: dict[str, Any] = {}
     for key, value in values.items():
         if key not in fields:
-            raise _unknown(str(key), list(fields), path, place)
+            raise _unknown(shown(key), list(fields), path, place)
         field = fields[key]
         old = getattr(target, field.name, None)
         if key == "levels":

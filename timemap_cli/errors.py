@@ -38,6 +38,27 @@ class UsageError(TimemapError):
         super().__init__(message, hint=hint, exit_code=ExitCode.USAGE)
 
 
+def as_expected(error: Exception) -> TimemapError:
+    """Any error as one that can be told in a sentence; one that nobody expected says where it arose."""
+    if isinstance(error, TimemapError):
+        return error
+    if isinstance(error, OSError):
+        reason = (error.strerror or str(error)).lower()
+        return TimemapError(f"{error.filename}: {reason}" if error.filename else reason)
+    if isinstance(error, MemoryError):
+        return TimemapError("there is not enough memory")
+    place = ""
+    if error.__traceback__ is not None:
+        import traceback
+
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        place = f" in {Path(last.filename).name}, line {last.lineno}"
+    return TimemapError(
+        f"timemap itself failed: {type(error).__name__}{place}: {shown(str(error))}",
+        hint="report it, with the file that it fails on",
+    )
+
+
 def no_such_file(path: Path, otherwise: str) -> UsageError:
     """The error for a path at which nothing is: what is called much like it is proposed, or `otherwise`."""
     from difflib import get_close_matches
@@ -45,6 +66,21 @@ def no_such_file(path: Path, otherwise: str) -> UsageError:
     names = [one.name for one in path.parent.iterdir()] if path.parent.is_dir() else []
     near = [str(path.with_name(name)) for name in get_close_matches(path.name, sorted(names), 1)]
     return UsageError(f"there is no file {path}", hint=near[0] if near else otherwise)
+
+
+_MOST_SHOWN = 60
+
+
+def shown(value: object) -> str:
+    """A value of a file as a message shows it: in one line, and short, whatever it is and however large."""
+    if isinstance(value, str):
+        text = value[: 10 * _MOST_SHOWN]  # of a gigabyte the beginning is enough
+    else:
+        import reprlib
+
+        text = reprlib.repr(value)
+    text = " ".join(text.split())
+    return text if len(text) <= _MOST_SHOWN else f"{text[: _MOST_SHOWN - 3]}..."
 
 
 def as_word(name: str) -> str:

@@ -43,6 +43,7 @@ class Earlier:
         UsageError where it is missing or none, TimemapError where it is damaged or cannot be resumed.
         """
         with ResultReader(path) as result, _damage_told(path):
+            result.require_resumable()  # the settings of another version may have other names
             settings = loads(result.config, f"the settings of {path}")
             reading = next(kept.state for kept in result.state() if kept.part is Part.READING)
             nodes = tuple(Node(x, y) for x, y in reading["observer.nodes"].tolist())

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from timemap_cli.errors import shown
 from timemap_cli.spans import Span, plain
 
+_LONGEST_NAME = 255  # as in ROS 2; a longer one would fill the messages that name it
 _SPAN_EXAMPLES = {"obs": "50obs", "s": "0.5s, 10min, 12h"}
 
 
@@ -139,6 +141,8 @@ class Text:
         """The text itself."""
         if not isinstance(value, str) or not value.strip() or not value.isprintable():
             raise _wrong(value, "not a name")
+        if len(value) > _LONGEST_NAME:
+            raise _wrong(value, f"longer than {_LONGEST_NAME} letters")
         if self.pattern and not re.fullmatch(self.pattern, value):
             raise _wrong(value, f"not a name of the form {self.pattern}")
         return value
@@ -194,5 +198,5 @@ def _wrong(value: object, what: str) -> ValueError:
     elif isinstance(value, bool):
         text = str(value).lower()  # as YAML has it
     else:
-        text = " ".join(f"'{value}'".split() if isinstance(value, str) else str(value).split())
-    return ValueError(f"is {text if len(text) <= 60 else text[:57] + '...'}, {what}")
+        text = shown(f"'{value}'" if isinstance(value, str) else value)
+    return ValueError(f"is {text}, {what}")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from timemap_cli.errors import UsageError
+from timemap_cli.plain_yaml import SMALL, YamlError, plain_values, too_large
 
 SHOWN = "timemap config shows how settings are written"
 
@@ -13,7 +14,9 @@ SHOWN = "timemap config shows how settings are written"
 def read_yaml(path: Path, what: str = "settings", hint: str = SHOWN) -> Mapping[str, Any]:
     """A file of settings, or of something else, as nested mappings; UsageError where it is missing or not YAML."""
     try:
-        text = path.read_text(encoding="utf-8")
+        with path.open("rb") as file:
+            content = file.read(SMALL.octets + 1)
+        text = content.decode("utf-8") if len(content) <= SMALL.octets else None
     except FileNotFoundError as error:
         raise UsageError(
             f"no {what} file {path}",
@@ -22,30 +25,19 @@ def read_yaml(path: Path, what: str = "settings", hint: str = SHOWN) -> Mapping[
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror or str(error)).lower() if isinstance(error, OSError) else "it is not a text"
         raise UsageError(f"cannot read the {what} file {path}: {reason}", hint=hint) from error
+    if text is None:
+        raise UsageError(f"{path} {too_large(SMALL)}: it holds no {what}", hint=hint)
     return parsed_yaml(text, str(path), what, hint)
 
 
 def parsed_yaml(text: str, place: str, what: str = "settings", hint: str = SHOWN) -> Mapping[str, Any]:
     """The text of such a file as nested mappings; `place` is what errors call it. UsageError where it is not YAML."""
-    # YAML is slow to import and most runs have no settings file.
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
     try:
-        values = YAML(typ="safe", pure=True).load(text)
-    except RecursionError as error:
-        raise UsageError(f"{place} is nested too deeply", hint=hint) from error
-    except (YAMLError, ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
-        raise UsageError(f"{place} is not YAML: {_yaml_trouble(error)}", hint=hint) from error
+        values = plain_values(text)
+    except YamlError as error:
+        raise UsageError(f"{place} {error}", hint=hint) from error
     if values is None:
         return {}
     if not isinstance(values, Mapping):
         raise UsageError(f"{place} holds no {what}", hint=hint)
     return values
-
-
-def _yaml_trouble(error: Exception) -> str:
-    """What is wrong and in which line, without the library's own advice."""
-    problem, mark = getattr(error, "problem", None), getattr(error, "problem_mark", None)
-    what = " ".join(str(problem or error).replace('in "<unicode string>", ', "at ").split())
-    return f"line {mark.line + 1}: {what}" if mark is not None else what

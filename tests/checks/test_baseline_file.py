@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.checks.making import EVENT, SECOND, rings, snapshot
+from timemap_cli import __version__
 from timemap_cli.checks.baseline_file import Baseline, dump, read
 from timemap_cli.errors import TimemapError, UsageError
 
@@ -94,10 +95,23 @@ def test_a_missing_file_is_told_with_how_to_make_it(tmp_path):
 
 def test_another_file_is_no_baseline(tmp_path):
     path = tmp_path / "b.yaml"
-    for content in (b"checks: []\n", b"\x89MCAP0\r\n", b"format: timemap.baseline/2\n"):
+    for content in (b"checks: []\n", b"\x89MCAP0\r\n", b"format: timemap.baseline/x\n"):
         path.write_bytes(content)
         with pytest.raises(UsageError, match=r"is not a baseline of the format timemap.baseline/1"):
             read(path)
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_a_baseline_of_another_version_is_told_with_both(tmp_path, baseline, ending):
+    path = tmp_path / "b.yaml"
+    text = dump(baseline).replace("baseline/1", "baseline/2").replace('version: "1.0"', 'version: "7.5"')
+    path.write_bytes(text.replace("\n", ending).encode())
+    with pytest.raises(UsageError) as told:
+        read(path)
+    assert told.value.message == (
+        f"{path} holds timemap.baseline/2 of timemap 7.5; this is timemap {__version__}, which reads timemap.baseline/1"
+    )
+    assert told.value.hint.startswith("timemap 7.5 reads it; or remove it")
 
 
 @pytest.mark.parametrize(

@@ -10,17 +10,27 @@ import numpy as np
 
 from timemap_cli.checks.coding import decoded, encoded
 from timemap_cli.checks.fields import Fields
-from timemap_cli.checks.snapshot import Input, LevelRings, Scans, SeenEvent, Snapshot
+from timemap_cli.checks.snapshot import (
+    Input,
+    LevelRings,
+    Scans,
+    SeenEvent,
+    Snapshot,
+    require_comparable_size,
+)
 from timemap_cli.checks.tolerances import checked
 from timemap_cli.errors import TimemapError, UsageError, no_such_file
 from timemap_cli.model.nodes import Node
+from timemap_cli.plain_yaml import Bounds, YamlError, plain_values
 from timemap_cli.times import format_time, parse_time
+from timemap_cli.versions import require_readable
 
 FORMAT = "timemap.baseline/1"
 HEAD = "# What the map of these recordings is expected to be, for `timemap check`; --update-baseline writes it anew.\n"
 _ANEW = "remove it, or name another file: --update-baseline makes it anew then"
 _PAIR = re.compile(r"\\ud[89ab][0-9a-f]{2}\\ud[c-f][0-9a-f]{2}")  # how JSON writes a letter beyond 16 bits
 _WORDS = ("null", "true", "false")  # names of levels that YAML would read as something else
+_MOST_OCTETS = 32_000_000  # of the largest map there may be, twice
 _BINS = (1, 3600)  # angle bins of a node
 _RINGS_NOTE = (
     "# Ranges round the node, counter-clockwise from the map's +x: centimetres, then a letter for each angle bin,",
@@ -54,29 +64,32 @@ def read(path: Path) -> Baseline:
     Raises UsageError where there is none, where it is anything else, or for tolerances that are not known;
     TimemapError where it cannot be read or is damaged.
     """
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
     try:
         with path.open("rb") as file:
             head = file.read(1000)
             if not _begins_like_one(head):  # a recording of gigabytes, perhaps
-                raise not_a_baseline(path)
-            text = (head + file.read()).decode()
+                raise _not_read(path, head)
+            text = (head + file.read(_MOST_OCTETS)).decode()
     except FileNotFoundError as error:
         raise _missing(path) from error
     except UnicodeDecodeError as error:
-        raise not_a_baseline(path) from error
+        raise _not_a_baseline(path) from error
     except OSError as error:
         raise TimemapError(f"cannot read {path}: {(error.strerror or str(error)).lower()}") from error
     try:
-        return _baseline(Fields(YAML(typ="safe", pure=True).load(text), ""), path)
+        return _baseline(Fields(plain_values(text, _bounds(text)), ""), path)
     except UsageError:
         raise
-    except RecursionError as error:
-        raise _damaged(path, "it is nested too deeply") from error
-    except (YAMLError, ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
+    except YamlError as error:
+        raise _damaged(path, f"it {error}") from error
+    except ValueError as error:
         raise _damaged(path, str(error)) from error
+
+
+def _bounds(text: str) -> Bounds:
+    """How large a baseline may be that has so many rows: one of a large map is read for long, any other text is not."""
+    rows = sum(text.count(word) for word in ("ranges:", "x:", "sha256:"))
+    return Bounds(min(100_000 + 20_000 * rows, _MOST_OCTETS), 3_000 + 30 * rows)
 
 
 def is_baseline(path: Path) -> bool:
@@ -95,8 +108,25 @@ def _damaged(path: Path, trouble: str) -> TimemapError:
     return TimemapError(f"{path} is damaged: {' '.join(trouble.split())[:200]}", hint=_ANEW)
 
 
-def not_a_baseline(path: Path) -> UsageError:
+def _not_read(path: Path, head: bytes) -> UsageError:
     """The error for a file that is no baseline, or one of another version."""
+    form, version = (_line_of(head, name) for name in ("format", "version"))
+    try:
+        require_readable(path, form, FORMAT, version or "unknown", _ANEW)
+    except UsageError as error:
+        return error
+    except ValueError:
+        pass
+    return _not_a_baseline(path)
+
+
+def _line_of(head: bytes, name: str) -> str | None:
+    """What stands behind a name at the beginning of a line."""
+    found = re.search(rf"^{name}: *\"?([ -~]*?)\"?\r?$", head.decode(errors="replace"), re.MULTILINE)
+    return found[1] if found else None
+
+
+def _not_a_baseline(path: Path) -> UsageError:
     return UsageError(f"{path} is not a baseline of the format {FORMAT}", hint=_ANEW)
 
 
@@ -200,6 +230,7 @@ def _baseline(values: Fields, path: Path) -> Baseline:
 
 def _levels(levels: Fields, nodes: int, bins: int) -> dict[str, LevelRings]:
     """The rings of each level; one that knows no node has nothing behind its name."""
+    require_comparable_size(nodes, bins, len(levels.plain()))
     return {
         name: _rings(levels.part(name).numbered() if levels.has(name) else {}, nodes, bins)
         for name in levels.plain()

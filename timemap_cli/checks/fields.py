@@ -3,6 +3,8 @@
 import math
 from collections.abc import Mapping
 
+from timemap_cli.errors import shown
+
 
 class Fields:
     """A mapping of a file; every method raises ValueError, with the place, where a value is missing or another type.
@@ -42,7 +44,7 @@ class Fields:
         """A text."""
         value = self._value(key)
         if not isinstance(value, str):
-            raise ValueError(f"{self._at(key)} is not a text: {value}")
+            raise ValueError(f"{self._at(key)} is not a text: {shown(value)}")
         return value
 
     def texts(self, key: str) -> tuple[str, ...]:
@@ -56,7 +58,7 @@ class Fields:
         """A finite number."""
         value = self._value(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"{self._at(key)} is not a number: {value}")
+            raise ValueError(f"{self._at(key)} is not a number: {shown(value)}")
         if not -1e12 < value < 1e12:  # False for NaN
             raise ValueError(f"{self._at(key)} is out of all range")
         return float(value)
@@ -85,7 +87,7 @@ class Fields:
         return self._value(key) is not None
 
     def _at(self, key: object) -> str:
-        return f"{self._place}.{key}" if self._place else str(key)
+        return f"{self._place}.{shown(key)}" if self._place else shown(key)
 
     def _names(self) -> list[str]:
         for key in self._values:

@@ -12,6 +12,16 @@ Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
 
+_MOST_BINS = 25_000_000  # of all nodes and levels, 200 MB; three levels of a thousand nodes are a million
+
+
+def require_comparable_size(nodes: int, angle_bins: int, levels: int) -> None:
+    """ValueError for a map of more angle bins than are held at once."""
+    if nodes * angle_bins * levels > _MOST_BINS:
+        told = f"{levels} levels of {nodes} nodes with {angle_bins} angle bins"
+        raise ValueError(f"{told} are more than the {_MOST_BINS} angle bins that can be compared")
+
+
 @dataclass(frozen=True, slots=True)
 class Input:
     """A recording."""

@@ -1,15 +1,22 @@
 """The snapshot of a result."""
 
 import hashlib
-import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from ruamel.yaml import YAML
 
 from timemap_cli.checks.coding import rounded
-from timemap_cli.checks.snapshot import Input, LevelRings, Scans, SeenEvent, Snapshot
+from timemap_cli.checks.snapshot import (
+    Input,
+    LevelRings,
+    Scans,
+    SeenEvent,
+    Snapshot,
+    require_comparable_size,
+)
+from timemap_cli.errors import TimemapError, shown
 from timemap_cli.model.elementary import distance
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.results.reader import ResultReader
@@ -19,19 +26,23 @@ _SECOND_NS = 10**9
 
 
 def taken(reader: ResultReader) -> Snapshot:
-    """What a result holds at its end. Raises TimemapError where it is damaged."""
-    metadata = reader.metadata
+    """What a result holds at its end. Raises TimemapError where it is damaged, or larger than can be compared."""
     report = reader.report
+    try:
+        require_comparable_size(len(reader.nodes), reader.angle_bins, len(reader.levels))
+        settings = flat_settings(reader.settings)
+    except ValueError as error:
+        raise TimemapError(f"{reader.path} cannot be checked: {error}") from error
     return Snapshot(
-        version=metadata["version"],
-        inputs=tuple(Input(one["name"], one["sha256"]) for one in json.loads(metadata.get("inputs", "[]"))),
-        settings=flat_settings(YAML(typ="safe", pure=True).load(reader.config) or {}),
+        version=reader.version,
+        inputs=tuple(Input(one["name"], one["sha256"]) for one in reader.inputs),
+        settings=settings,
         map_frame=reader.map_frame,
         radius=reader.radius,
         angle_bins=reader.angle_bins,
-        no_return=str(report.get("no_return", "")),
+        no_return=report.get("no_return", ""),
         beams=report.get("beams", {}),
-        scans=_scans(metadata),
+        scans=_scans(reader),
         nodes=tuple(reader.nodes),
         levels={level: _rings(reader, level) for level in reader.levels},
         events=tuple(_event(event) for event in reader.changes["events"]),
@@ -39,11 +50,16 @@ def taken(reader: ResultReader) -> Snapshot:
 
 
 def flat_settings(settings: Mapping[str, Any], path: str = "") -> dict[str, object]:
-    """Nested settings by their whole names; a level stands under its own: `levels.long.window`."""
+    """Nested settings by their whole names; a level stands under its own: `levels.long.window`.
+
+    ValueError where they are none: an unnamed level, a name that is no word.
+    """
     flat: dict[str, object] = {}
     for key, value in settings.items():
+        if not _is_word(key):
+            raise ValueError(f"its settings have the name {shown(key)}")
         if key == "levels":
-            for level in value:
+            for level in _levels(value):
                 named = {name: one for name, one in level.items() if name != "name"}
                 flat |= flat_settings(named, f"{path}levels.{level['name']}.")
         elif isinstance(value, Mapping):
@@ -53,11 +69,21 @@ def flat_settings(settings: Mapping[str, Any], path: str = "") -> dict[str, obje
     return flat
 
 
-def _scans(metadata: Mapping[str, str]) -> Scans:
-    dropped = {
-        reason: count for reason, count in json.loads(metadata.get("scans_dropped", "{}")).items() if count
-    }
-    return Scans(int(metadata.get("scans_read", 0)), int(metadata.get("scans_used", 0)), dropped)
+def _levels(values: object) -> list[Mapping[str, Any]]:
+    if not isinstance(values, list) or not all(isinstance(one, Mapping) for one in values):
+        raise ValueError("its settings have no list of levels")
+    if not all(_is_word(level.get("name")) for level in values):
+        raise ValueError("its settings have a level without a name")
+    return values
+
+
+def _is_word(name: object) -> bool:
+    return isinstance(name, str) and re.fullmatch(r"\w{1,255}", name) is not None
+
+
+def _scans(reader: ResultReader) -> Scans:
+    read, used, dropped = reader.scans
+    return Scans(read, used, {reason: count for reason, count in dropped.items() if count})
 
 
 def _rings(reader: ResultReader, level: str) -> LevelRings:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +62,13 @@ def checked(values: Mapping[str, object], place: str) -> dict[str, float]:
     found: dict[str, float] = {}
     for name, value in values.items():
         if name not in TOLERANCES:
-            near = get_close_matches(str(name), TOLERANCES, n=1, cutoff=0.4)
+            near = get_close_matches(shown(name), TOLERANCES, n=1, cutoff=0.4)
             raise UsageError(
-                f"unknown tolerance {name} in {place}",
+                f"unknown tolerance {shown(name)} in {place}",
                 hint=near[0] if near else f"one of {', '.join(TOLERANCES)}",
             )
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < _MOST:
-            raise UsageError(f"tolerance {name} in {place} is not a number from 0 on: {value}")
+            raise UsageError(f"tolerance {name} in {place} is not a number from 0 on: {shown(value)}")
         found[name] = float(value)
     return found
 

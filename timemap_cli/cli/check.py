@@ -95,7 +95,10 @@ def check(
         with ProgressBar(terminal) as progress:
             if updates:
                 return _tell_updated(terminal, [checking.update(one, progress)])
-            cases = [checking.check(one, progress, _page_writer(html, one) if html else None)]
+            cases = [checking.checked(one, progress, _page_writer(html, one) if html else None)]
+        if cases[0].error is not None:
+            outputs.tell(terminal, cases, wanted if formats else ())  # in its report as on the terminal
+            raise cases[0].error
     outputs.tell(terminal, cases, wanted)
     return exit_code_of(cases)
 

@@ -16,7 +16,7 @@ from timemap_cli.cli.plot import plot
 from timemap_cli.cli.replay import replay
 from timemap_cli.cli.report import report
 from timemap_cli.cli.terminal import Terminal
-from timemap_cli.errors import ExitCode, TimemapError, UsageError
+from timemap_cli.errors import ExitCode, TimemapError, UsageError, as_expected
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -45,11 +45,8 @@ def main(args: Sequence[str], terminal: Terminal | None = None) -> int:
     except TimemapError as error:
         terminal.error(error)
         return error.exit_code
-    except OSError as error:
-        terminal.error(TimemapError(_system_trouble(error)))
-        return ExitCode.FAILED
-    except MemoryError:
-        terminal.error(TimemapError("there is not enough memory"))
+    except (OSError, MemoryError) as error:
+        terminal.error(as_expected(error))
         return ExitCode.FAILED
     except (KeyboardInterrupt, click.Abort) as error:
         if isinstance(error.__cause__, EOFError):  # click takes it for Ctrl-D at a prompt; there are none
@@ -85,8 +82,3 @@ def _exit_code(args: Sequence[str], terminal: Terminal) -> int:
 def _sentence(text: str) -> str:
     """Click's complaint in the form of our own: no capital at its start, no full stop at its end."""
     return text[:1].lower() + text[1:].rstrip(".")
-
-
-def _system_trouble(error: OSError) -> str:
-    reason = (error.strerror or str(error)).lower()
-    return f"{error.filename}: {reason}" if error.filename else reason

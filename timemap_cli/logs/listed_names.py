@@ -9,22 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePath
-from typing import Any
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
-from ruamel.yaml.events import (
-    AliasEvent,
-    CollectionEndEvent,
-    CollectionStartEvent,
-    MappingStartEvent,
-    ScalarEvent,
-)
+from timemap_cli.plain_yaml import Event, Kind, events
 
 INFORMATION = "rosbag2_bagfile_information"
 _LIST = [INFORMATION, "relative_file_paths", None]
 _MOST_CHARACTERS = 4_000_000  # ten thousand parts and a thousand topics need half of it
-_DEEPEST = 20
 
 
 def listed_names(metadata: Path) -> list[str]:
@@ -34,10 +24,7 @@ def listed_names(metadata: Path) -> list[str]:
     """
     with metadata.open(encoding="utf-8") as file:
         text = file.read(_MOST_CHARACTERS)
-    try:
-        return [PurePath(path).name for path in _paths(YAML(typ="safe", pure=True).parse(text))]
-    except YAMLError as error:
-        raise ValueError(f"{metadata} is no YAML") from error
+    return [PurePath(path).name for path in _paths(events(text))]
 
 
 @dataclass(slots=True)
@@ -53,22 +40,22 @@ class Open:
             self.key = text if self.key is None else None
 
 
-def _paths(events: Iterable[Any]) -> list[str]:
+def _paths(steps: Iterable[Event]) -> list[str]:
     opened: list[Open] = []
     found: list[str] = []
-    for event in events:
-        if isinstance(event, CollectionStartEvent):
-            if len(opened) == _DEEPEST:
-                break
-            opened.append(Open(isinstance(event, MappingStartEvent)))
+    for event in steps:
+        if event.kind is Kind.DOCUMENT:
+            continue
+        if event.kind in (Kind.MAPPING, Kind.SEQUENCE):
+            opened.append(Open(event.kind is Kind.MAPPING))
             continue
         is_in_list = [one.key for one in opened] == _LIST and not opened[-1].is_mapping
-        if isinstance(event, CollectionEndEvent):
+        if event.kind is Kind.END:
             if is_in_list:
                 return found
             opened.pop()
-        if isinstance(event, ScalarEvent) and is_in_list:
-            found.append(event.value)
-        if isinstance(event, ScalarEvent | AliasEvent | CollectionEndEvent) and opened:
-            opened[-1].take(event.value if isinstance(event, ScalarEvent) else "")
+        if event.kind is Kind.SCALAR and is_in_list:
+            found.append(event.text)
+        if opened:
+            opened[-1].take(event.text)
     raise ValueError("it names no files")

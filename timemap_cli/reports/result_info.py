@@ -1,12 +1,12 @@
 """What a result holds, as a document and as a text of one screen."""
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from timemap_cli.model.estimates import Estimate
+from timemap_cli.reports.changes_json import summary
 from timemap_cli.reports.tables import plural
 from timemap_cli.results.channels import LevelTopic
 from timemap_cli.results.reader import ResultReader
@@ -23,8 +23,8 @@ def result_document(result: ResultReader) -> Document:
         "version": metadata.get("version"),
         "start_ns": str(result.start_ns),
         "end_ns": str(result.end_ns),
-        "inputs": json.loads(metadata.get("inputs", "[]")),
-        "resumed_from": json.loads(metadata.get("resumed_from", "null")),
+        "inputs": result.inputs,
+        "resumed_from": result.resumed_from,
         "can_be_resumed": result.can_be_resumed,
         "map_frame": result.map_frame,
         "nodes": len(result.nodes),
@@ -32,7 +32,7 @@ def result_document(result: ResultReader) -> Document:
         "angle_bins": result.angle_bins,
         "scans": result.report["scans"],
         "levels": [_level(result, level) for level in result.levels],
-        "changes": result.changes["summary"],
+        "changes": summary(result.changes["events"]),
         "settings_sha256": metadata.get("settings_sha256"),
         "settings": result.config,
     }

@@ -1,7 +1,9 @@
 """The MCAP container of a result: opening it, its records, and the messages of one topic."""
 
+import io
 import struct
 from collections.abc import Callable, Collection, Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self, TypeVar
@@ -10,8 +12,8 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
-from mcap.records import Chunk, ChunkIndex
-from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
+from mcap.records import Attachment, Chunk, ChunkIndex, McapRecord, Metadata
+from mcap.stream_reader import CRCValidationError, StreamReader, get_chunk_data_stream
 from mcap.summary import Summary
 from zstandard import ZstdError, frame_content_size
 
@@ -24,11 +26,22 @@ _MOST_BYTES = (
 _MAGIC = b"\x89MCAP0\r\n"
 _RECORDINGS = (_MAGIC, b"#ROSBAG", b"SQLite format 3\x00")
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
+_FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary and of its offsets, checksum
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 _T = TypeVar("_T")
 
 # What mcap and the decompressors raise when they are given anything else than a whole file.
-_DAMAGE = (McapError, ZstdError, EOFError, ValueError, KeyError, RuntimeError, MemoryError, struct.error)
+_DAMAGE = (
+    McapError,
+    StopIteration,
+    ZstdError,
+    EOFError,
+    ValueError,
+    KeyError,
+    RuntimeError,
+    MemoryError,
+    struct.error,
+)
 
 
 class ResultFile:
@@ -69,9 +82,12 @@ class ResultFile:
 
     def attachment(self, name: str) -> str:
         """Text of an attachment."""
-        for attachment in self._guarded(lambda: list(self._reader.iter_attachments())):
-            if attachment.name == name:
-                return self._guarded(attachment.data.decode)
+        for index in self._summary.attachment_indexes:
+            if index.name == name:
+                found = self._record(index.offset)
+                if isinstance(found, Attachment) and found.name == name:
+                    return self._guarded(found.data.decode)
+                raise self._damaged("its records do not fit together")
         raise self._damaged(f"{name} is missing")
 
     def messages(self, topics: Collection[str], until_ns: int | None = None) -> Iterator[tuple[str, bytes]]:
@@ -107,6 +123,12 @@ class ResultFile:
     def _chunks_with(self, wanted: Mapping[int, str]) -> list[ChunkIndex]:
         """Chunks that hold a message of one of these channels, or do not tell, in the order of writing."""
         chunks = sorted(self._summary.chunk_indexes, key=lambda c: c.chunk_start_offset)
+        if any(
+            one.chunk_start_offset + one.chunk_length > two.chunk_start_offset
+            for one, two in pairwise(chunks)
+        ):
+            # A small file could list one chunk a million times.
+            raise self._damaged("its records do not fit together")
         return [c for c in chunks if not c.message_index_offsets or wanted.keys() & c.message_index_offsets]
 
     def _messages_of(
@@ -126,19 +148,32 @@ class ResultFile:
         return data.read(size)
 
     def _read_summary(self) -> Summary:
+        self._guarded(lambda: _require_no_chunks(self._stream))
         summary = self._guarded(self._reader.get_summary)
         if summary is None or summary.statistics is None:
             raise self._damaged("its end is missing")
         return summary
 
     def _read_metadata(self) -> dict[str, str]:
-        names = [index.name for index in self._summary.metadata_indexes]
-        if channels.METADATA not in names:
-            raise _not_a_result(self.path, recording=True)
-        for record in self._guarded(lambda: list(self._reader.iter_metadata())):
-            if record.name == channels.METADATA:
-                return dict(record.metadata)
-        raise self._damaged("its metadata is missing")
+        for index in self._summary.metadata_indexes:
+            if index.name == channels.METADATA:
+                found = self._record(index.offset)
+                if isinstance(found, Metadata) and found.name == index.name:
+                    return dict(found.metadata)
+                raise self._damaged("its metadata is missing")
+        raise _not_a_result(self.path, recording=True)
+
+    def _record(self, offset: int) -> McapRecord:
+        """The record at a place of the file."""
+
+        def read() -> McapRecord:
+            self._stream.seek(offset)
+            reader = StreamReader(
+                self._stream, skip_magic=True, emit_chunks=True, record_size_limit=_MOST_BYTES
+            )
+            return next(reader.records)
+
+        return self._guarded(read)
 
     def _guarded(self, read: Callable[[], _T]) -> _T:
         """Call something that reads, and say in our words what goes wrong."""
@@ -166,6 +201,18 @@ def is_result(path: Path) -> bool:
     except TimemapError:
         return False
     return True
+
+
+def _require_no_chunks(stream: BinaryIO) -> None:
+    """ValueError where the summary holds a chunk: the reader would unpack it, whatever its size."""
+    end = stream.seek(-_FOOTER.size - len(_MAGIC), io.SEEK_END)
+    opcode, _, place, _, _ = _FOOTER.unpack(stream.read(_FOOTER.size))
+    while opcode == Opcode.FOOTER and 0 < place < end:
+        stream.seek(place)
+        kind, length = _RECORD.unpack(stream.read(_RECORD.size))
+        if kind == Opcode.CHUNK:
+            raise ValueError("a chunk in the summary")
+        place += _RECORD.size + length
 
 
 def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[tuple[str, int, bytes]]:

@@ -8,6 +8,8 @@ from typing import Any
 
 from timemap_cli.changes.difference import Kind
 
+CHANGES_FORMAT = "timemap.changes/1"
+REPORT_FORMAT = "timemap.report/1"
 _Check = Callable[[Any], bool]
 _FARTHEST_M = 1e9
 _MOST_NS = 2**63 - 1
@@ -26,7 +28,7 @@ def check_changes(document: Any, levels: Collection[str], nodes: int) -> dict[st
     event = _event(set(levels), nodes)
     form = _form(
         {
-            "schema": lambda schema: schema == "timemap.changes/1",
+            "schema": lambda schema: schema == CHANGES_FORMAT,
             "events": _list_of(event),
             "summary": _by_name(_is_count),
         }
@@ -36,9 +38,14 @@ def check_changes(document: Any, levels: Collection[str], nodes: int) -> dict[st
 
 def check_report(document: Any) -> dict[str, Any]:
     """The document `timemap.report/1` of a result; ValueError if it is none."""
-    scans = _form({"read": _is_count, "used": _is_count, "dropped": _by_name(_is_count)})
-    form = _form({"schema": lambda schema: schema == "timemap.report/1", "nodes": _is_count, "scans": scans})
-    return _checked(document, form)
+    scans = _form({"read": _is_count, "used": _is_count, "dropped": _by_word(_is_count)})
+    form = _form({"schema": lambda schema: schema == REPORT_FORMAT, "nodes": _is_count, "scans": scans})
+    report = _checked(document, form)
+    if not _is_text(report.get("no_return", "")) or not _by_name(_by_word(_is_share))(
+        report.get("beams", {})
+    ):
+        raise ValueError("a missing return or beams that are not of their kind")
+    return report
 
 
 def check_inputs(document: Any) -> list[dict[str, str]]:
@@ -47,6 +54,14 @@ def check_inputs(document: Any) -> list[dict[str, str]]:
         raise ValueError("not a list of recordings")
     inputs: list[dict[str, str]] = document
     return inputs
+
+
+def check_dropped(document: Any) -> dict[str, int]:
+    """The scans dropped by reason, as a result's metadata has them; ValueError if they are none."""
+    if not _by_word(_is_count)(document):
+        raise ValueError("not counts by reason")
+    dropped: dict[str, int] = document
+    return dropped
 
 
 def _checked(document: Any, form: _Check) -> dict[str, Any]:
@@ -99,6 +114,11 @@ def _list_of(check: _Check) -> _Check:
 
 def _by_name(check: _Check) -> _Check:
     return lambda value: isinstance(value, dict) and all(map(check, value.values()))
+
+
+def _by_word(check: _Check) -> _Check:
+    """By names that may stand anywhere: in a baseline, in a sentence."""
+    return lambda value: _by_name(check)(value) and all(re.fullmatch(r"\w{1,100}", name) for name in value)
 
 
 def _or_none(check: _Check) -> _Check:

@@ -9,28 +9,43 @@ from typing import Any, Self
 
 import numpy as np
 
-from timemap_cli.errors import TimemapError
+from timemap_cli.errors import TimemapError, shown
 from timemap_cli.model.elementary import distance
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
+from timemap_cli.model.placement import MOST_NODES
+from timemap_cli.plain_yaml import plain_values
 from timemap_cli.results import channels
 from timemap_cli.results.channels import LevelTopic
 from timemap_cli.results.container import ResultFile
-from timemap_cli.results.documents import check_changes, check_inputs, check_report, parsed
+from timemap_cli.results.documents import (
+    CHANGES_FORMAT,
+    REPORT_FORMAT,
+    check_changes,
+    check_dropped,
+    check_inputs,
+    check_report,
+    parsed,
+)
 from timemap_cli.results.layouts import frame_of, unpack_estimate
 from timemap_cli.results.messages import unpack_nodes
 from timemap_cli.results.state_messages import FORMAT as STATE_FORMAT
 from timemap_cli.results.state_messages import StatePart, unpack_state
+from timemap_cli.versions import require_readable
 
+_LEVEL = re.compile("[a-z][a-z0-9_]{0,254}")
 _MOST_BINS = 3600  # what settings allow
 _FARTHEST_M = 1e9
+_MOST_LEVELS = 100
+_ANEW = "make it again with `timemap replay`"
 
 
 class ResultReader:
     """A result opened for reading, also a context manager.
 
     Raises UsageError if there is no such file, or if it is a recording or anything else than a result;
-    TimemapError where it is damaged or made by a later timemap, then or at any later call.
+    and if another version of timemap wrote it in a format that this one does not read; TimemapError where it is
+    damaged, then or at any later call.
     """
 
     def __init__(self, path: Path) -> None:
@@ -74,7 +89,7 @@ class ResultReader:
     def report(self) -> dict[str, Any]:
         """The report of the replay."""
         try:
-            return check_report(parsed(self._file.attachment(channels.REPORT)))
+            return check_report(self._document(channels.REPORT, REPORT_FORMAT))
         except ValueError as error:
             raise self._unreadable() from error
 
@@ -82,9 +97,8 @@ class ResultReader:
     def changes(self) -> dict[str, Any]:
         """The change events of the replay, schema timemap.changes/1."""
         try:
-            return check_changes(
-                parsed(self._file.attachment(channels.CHANGES)), self.levels, len(self.nodes)
-            )
+            document = self._document(channels.CHANGES, CHANGES_FORMAT)
+            return check_changes(document, self.levels, len(self.nodes))
         except ValueError as error:
             raise self._unreadable() from error
 
@@ -97,15 +111,43 @@ class ResultReader:
             raise self._unreadable() from error
 
     @property
-    def resumed_from(self) -> str | None:
-        """Name of the earlier result that it goes on from."""
+    def settings(self) -> dict[str, Any]:
+        """The settings of the replay, as nested mappings; they may be those of another version."""
+        try:
+            settings = plain_values(self.config)
+        except ValueError as error:
+            raise self._unreadable() from error
+        if not isinstance(settings, dict):
+            raise self._unreadable()
+        return settings
+
+    @property
+    def scans(self) -> tuple[int, int, dict[str, int]]:
+        """How many scans were read, how many used, and how many dropped by reason."""
+        read, used = (self.metadata.get(name, "0") for name in ("scans_read", "scans_used"))
+        try:
+            dropped = check_dropped(parsed(self.metadata.get("scans_dropped", "{}")))
+        except ValueError as error:
+            raise self._unreadable() from error
+        if not all(re.fullmatch("[0-9]{1,15}", count) for count in (read, used)):
+            raise self._unreadable()
+        return int(read), int(used), dropped
+
+    @property
+    def version(self) -> str:
+        """The timemap that wrote it."""
+        return shown(self.metadata.get("version", "unknown"))
+
+    @property
+    def resumed_from(self) -> dict[str, str] | None:
+        """Name and SHA-256 of the earlier result that it goes on from."""
         try:
             (earlier,) = check_inputs([parsed(self.metadata["resumed_from"])])
         except KeyError:
             return None
         except ValueError as error:
             raise self._unreadable() from error
-        return earlier["name"]
+        return earlier
 
     @property
     def recording_ends_ns(self) -> tuple[int, ...]:
@@ -156,17 +198,27 @@ class ResultReader:
 
     def state(self) -> Iterator[StatePart]:
         """What a later replay needs to go on, one part at a time: first those of no node, but the changes last."""
-        if not self.can_be_resumed:
-            version = self.metadata.get("version", "unknown")
-            raise TimemapError(
-                f"{self.path} was written by timemap {version}, which kept other things: it cannot be resumed",
-                hint="resume with that version, or replay all recordings in one go",
-            )
+        self.require_resumable()
         try:
             for _, message in self._file.messages([channels.STATE_TOPIC]):
                 yield unpack_state(message)
-        except (ValueError, TypeError, struct.error) as error:
+        except (ValueError, TypeError, RecursionError, struct.error) as error:
             raise self._unreadable() from error
+
+    def require_resumable(self) -> None:
+        """UsageError where this timemap cannot go on from it: its state is that of another version."""
+        found = self.metadata.get("state", "timemap.state/0")  # the first results kept none
+        try:
+            require_readable(self.path, found, STATE_FORMAT, self.version, "replay all recordings in one go")
+        except ValueError as error:
+            raise self._unreadable() from error
+
+    def _document(self, name: str, form: str) -> Any:
+        """A document in it, of the format that this timemap reads; ValueError where it is none."""
+        document = parsed(self._file.attachment(name))
+        schema = document.get("schema") if isinstance(document, dict) else None
+        require_readable(self.path, schema, form, self.version, _ANEW)
+        return document
 
     def _estimate(self, scan: bytes, status: bytes, level: str) -> Estimate:
         """The estimate in two messages; ValueError where it is none that a replay writes."""
@@ -181,7 +233,7 @@ class ResultReader:
 
     def _check_dimensions(self) -> None:
         """ValueError where levels, angle bins or radius are none that settings could have."""
-        names = all(re.fullmatch(r"[a-z][a-z0-9_]*", name) for name in self.levels)
+        names = len(self.levels) <= _MOST_LEVELS and all(map(_LEVEL.fullmatch, self.levels))
         distinct = len(set(self.levels)) == len(self.levels)
         if not (names and distinct and 0 < self.angle_bins <= _MOST_BINS and 0 < self.radius <= _FARTHEST_M):
             raise ValueError("no levels, angle bins or radius of a map")
@@ -190,23 +242,18 @@ class ResultReader:
         """The nodes of the last message that places them: it holds all."""
         message = self._file.last_message(channels.TF_STATIC)
         nodes = unpack_nodes(message) if message else ()
-        if len(nodes) != int(self.metadata["nodes"]):
-            raise ValueError("nodes are missing")
+        if len(nodes) != int(self.metadata["nodes"]) or len(nodes) > MOST_NODES:
+            raise ValueError("nodes are missing, or more than there may be")
         if not all(distance(node.x, node.y) <= _FARTHEST_M for node in nodes):
             raise ValueError("a node that is not on earth")
         return nodes
 
     def _check_format(self) -> None:
-        form = self.metadata.get("format", "none")
-        if form != channels.FORMAT:
-            version = self.metadata.get("version", "unknown")
-            raise TimemapError(
-                f"{self.path} has the format '{form}', this timemap reads '{channels.FORMAT}'",
-                hint=f"it was written by timemap {version}: use that one, or make it again",
-            )
+        """UsageError where another version wrote it, ValueError where it has no format."""
+        require_readable(self.path, self.metadata["format"], channels.FORMAT, self.version, _ANEW)
 
     def _unreadable(self) -> TimemapError:
         return TimemapError(
             f"{self.path} is damaged: its parts do not fit together",
-            hint="make it again with `timemap replay`",
+            hint=_ANEW,
         )
