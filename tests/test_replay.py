@@ -44,6 +44,14 @@ def test_times_count_from_the_first_scan_whenever_it_was_logged(tmp_path, log_la
     assert not summary.data_lost
 
 
+def test_a_bare_span_is_the_last_of_the_recording_and_a_bare_number_is_refused(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    assert replayed(tmp_path, log, start="3s").dropped == {"outside_time": 69}  # 6.9 s to 9.9 s are in
+    assert replayed(tmp_path, log, start="2023-11-14T22:13Z", force=True).scans_used == 100
+    with pytest.raises(UsageError, match="'10' alone is nanoseconds since 1970"):
+        replayed(tmp_path, log, start="10", force=True)
+
+
 def test_an_empty_stretch_of_time_is_refused(tmp_path):
     log = standing_log(tmp_path / "a.mcap")
     with pytest.raises(UsageError, match=r"--start \+5s is not before --end \+5s") as raised:
