@@ -86,7 +86,7 @@ def replay(
         writing = Writing(result, assembly.tracker(settings))
         start_ns, end_ns = _span_ns(plan, start, end)
         if earlier is not None:
-            earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+            earlier.require_before(logs, plan.span_ns, start_ns)
             observing.restore(earlier.reading)
             writing.restore(earlier.parts(), observing.nodes)
         learning = partial(assembly.learner, settings, given)
@@ -102,7 +102,7 @@ def replay(
             writing.take(answer, observing.nodes)
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
-        summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
+        summary = _summary(output, settings, plan, observing, writing, resume, time.perf_counter() - began)
         _require_some_use(summary, plan, start=start, end=end, nodes=nodes)
         metadata = _metadata(settings, recordings, summary, resume)
         changes = changes_document(writing.tracker.events, observing.newest_ns)
@@ -157,10 +157,18 @@ def _share_done(plan: Survey, now_ns: int | None) -> float:
 
 
 def _summary(
-    output: Path, settings: Settings, plan: Survey, observing: Observing, writing: Writing, seconds: float
+    output: Path,
+    settings: Settings,
+    plan: Survey,
+    observing: Observing,
+    writing: Writing,
+    resume: Path | None,
+    seconds: float,
 ) -> ReplaySummary:
     read, dropped = observing.counts.read, observing.counts.dropped
-    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks)
+    warnings = [*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks]
+    if observing.pause is not None:
+        warnings.append(observing.pause.told(resume))
     too_many = _too_many_dropped(dropped, read, settings.input.max_dropped)
     return ReplaySummary(
         result=output,

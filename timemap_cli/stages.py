@@ -15,6 +15,7 @@ from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer, gathered
 from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
+from timemap_cli.pauses import Pause, longest
 from timemap_cli.results.state_messages import Part, StatePart
 from timemap_cli.results.writer import ResultWriter
 
@@ -27,6 +28,7 @@ class Observing:
         self.used = 0
         self.newest_ns: int | None = None
         self.began_anew = False  # stamps went back from one recording to the next
+        self.pause: Pause | None = None  # the first that no robot makes
         self.state: State = {}  # what a later replay needs, once `steps` asks the memory for its part
         self._recordings = recordings
         self._plan = plan
@@ -130,6 +132,7 @@ class Observing:
         self.counts.drop("no_node", seen.no_node)
         if len(seen):
             self.began_anew |= self.newest_ns is not None and int(seen.stamps_ns[0]) < self.newest_ns
+            self.pause = self.pause or longest(self.newest_ns, seen.stamps_ns)
             self.newest_ns = int(seen.stamps_ns[-1])
 
 
