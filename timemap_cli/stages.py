@@ -139,12 +139,13 @@ class Observing:
 class Writing:
     """Writes what was learnt into the result, and follows the changes in it."""
 
-    def __init__(self, result: ResultWriter, tracker: Tracker) -> None:
+    def __init__(self, result: ResultWriter, levels: Sequence[str], tracker: Tracker) -> None:
+        """`levels` are all there are; the tracker may leave out some."""
         self.tracker = tracker
         self.nodes: Sequence[Node] = ()
         self.shortfalls: Mapping[str, float] = {}
         self._result = result
-        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in tracker.levels}
+        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in levels}
         self._newest_ns = 0
         self._round_ns: int | None = None  # newest scan of the newest round of this result
         self._maps_are_due = False
@@ -225,7 +226,8 @@ class Writing:
         for estimate in made.estimates:
             self._latest[estimate.level][estimate.node] = estimate
             self._maps_are_due = True
-        found = self.tracker.update(nodes, self._latest, made.estimates)
+        followed = [estimate for estimate in made.estimates if estimate.level in self.tracker.levels]
+        found = self.tracker.update(nodes, self._latest, followed)
         if found and self._is_new:
             self._result.write_changes(found, self.tracker.events, made.newest_ns)
 
