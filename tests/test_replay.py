@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.conftest import ROOT
 from tests.logs.recorded import ROS1, ROS2, START_NS, Message, drive, scan, transforms, write_bag, write_mcap
 from timemap_cli.config import load
 from timemap_cli.errors import TimemapError, UsageError
@@ -251,3 +252,22 @@ def test_small_blocks_are_learnt_together_and_it_does_not_show(tmp_path, monkeyp
     assert learnt[3:] == [1] * 300
     assert together.nodes > 30
     assert apart.result.read_bytes() == content
+
+
+def test_a_level_of_the_last_observation_changes_nothing_of_the_others_nor_of_the_events(tmp_path):
+    log = ROOT / "sample_logs" / "patrol_monday.mcap"
+    levels = [
+        {"name": one.name, "window": one.window, "half_life": str(one.half_life)} for one in SETTINGS.levels
+    ]
+    with_now = load(None, {"levels": [{"name": "now", "window": 1, "half_life": "1obs"}, *levels]})
+    plain = replay([log], tmp_path / "plain.timemap.mcap", SETTINGS).result
+    more = replay([log], tmp_path / "more.timemap.mcap", with_now).result
+    with ResultReader(plain) as one, ResultReader(more) as other:
+        assert one.changes == other.changes
+        for level in one.levels:
+            assert digests(one, level) == digests(other, level)
+        assert {estimate.samples.max() for estimate in other.estimates("now").values()} == {1}
+
+
+def digests(reader, level):
+    return {node: found.ranges.tobytes() for node, found in reader.estimates(level).items()}
