@@ -178,8 +178,8 @@ def test_the_radius_fits_millimetres_in_16_bits():
             "levels[0].name is 'Day 1', not a name",
         ),
         (
-            {"levels": [{"name": "a", "window": 1, "half_life": "9obs"}]},
-            "levels[0].window is 1, outside 2 to 1000",
+            {"levels": [{"name": "a", "window": 0, "half_life": "9obs"}]},
+            "levels[0].window is 0, outside 1 to 1000",
         ),
         ({"map": 5}, "map in the options holds no settings"),
     ],

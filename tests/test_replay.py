@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.conftest import ROOT
 from tests.logs.recorded import ROS1, ROS2, START_NS, Message, drive, scan, transforms, write_bag, write_mcap
 from timemap_cli.config import load
 from timemap_cli.errors import TimemapError, UsageError
@@ -42,6 +43,14 @@ def test_times_count_from_the_first_scan_whenever_it_was_logged(tmp_path, log_la
     summary = replayed(tmp_path, log, start="+2s", end="end-3s")
     assert summary.dropped == {"outside_time": 20 + 31}  # the end itself, 6.9 s, is out
     assert not summary.data_lost
+
+
+def test_a_bare_span_is_the_last_of_the_recording_and_a_bare_number_is_refused(tmp_path):
+    log = standing_log(tmp_path / "a.mcap")
+    assert replayed(tmp_path, log, start="3s").dropped == {"outside_time": 69}  # 6.9 s to 9.9 s are in
+    assert replayed(tmp_path, log, start="2023-11-14T22:13Z", force=True).scans_used == 100
+    with pytest.raises(UsageError, match="'10' alone is nanoseconds since 1970"):
+        replayed(tmp_path, log, start="10", force=True)
 
 
 def test_an_empty_stretch_of_time_is_refused(tmp_path):
@@ -243,3 +252,22 @@ def test_small_blocks_are_learnt_together_and_it_does_not_show(tmp_path, monkeyp
     assert learnt[3:] == [1] * 300
     assert together.nodes > 30
     assert apart.result.read_bytes() == content
+
+
+def test_a_level_of_the_last_observation_changes_nothing_of_the_others_nor_of_the_events(tmp_path):
+    log = ROOT / "sample_logs" / "patrol_monday.mcap"
+    levels = [
+        {"name": one.name, "window": one.window, "half_life": str(one.half_life)} for one in SETTINGS.levels
+    ]
+    with_now = load(None, {"levels": [{"name": "now", "window": 1, "half_life": "1obs"}, *levels]})
+    plain = replay([log], tmp_path / "plain.timemap.mcap", SETTINGS).result
+    more = replay([log], tmp_path / "more.timemap.mcap", with_now).result
+    with ResultReader(plain) as one, ResultReader(more) as other:
+        assert one.changes == other.changes
+        for level in one.levels:
+            assert digests(one, level) == digests(other, level)
+        assert {estimate.samples.max() for estimate in other.estimates("now").values()} == {1}
+
+
+def digests(reader, level):
+    return {node: found.ranges.tobytes() for node, found in reader.estimates(level).items()}

@@ -15,6 +15,7 @@ from timemap_cli.spans import Span
         (".5s", 0.5, "s"),
         ("10min", 600.0, "s"),
         ("12h", 43200.0, "s"),
+        ("2d", 172800.0, "s"),
         (" 10 s ", 10.0, "s"),
     ],
 )
@@ -35,6 +36,7 @@ def test_a_span_is_a_number_with_its_unit(text, value, unit):
         "infs",
         "1e400 days",
         "5S",
+        "1e999s",
         "\N{ARABIC-INDIC DIGIT THREE}s",
     ],
 )

@@ -18,8 +18,8 @@ from timemap_cli.model.schedule import Period, Schedule
 from timemap_cli.model.time_map import TimeMap
 
 
-def observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
-    """What turns scans into observations of nodes; given `nodes` are all there will be."""
+def observer(settings: Settings, nodes: Sequence[Node], likely: Sequence[Node] = ()) -> Observer:
+    """What turns scans into observations of nodes; given `nodes` are all there will be; `likely`: Placement."""
     gate = settings.gate
     return Observer(
         Gate(gate.min_travel, math.radians(gate.min_turn_deg), round(gate.min_interval_s * 1e9)),
@@ -27,6 +27,7 @@ def observer(settings: Settings, nodes: Sequence[Node]) -> Observer:
         radius=settings.map.radius,
         spacing=settings.map.node_spacing,
         nodes=nodes,
+        likely=likely,
     )
 
 
@@ -57,8 +58,12 @@ def learner(
 
 
 def tracker(settings: Settings) -> Tracker:
-    """What follows changes, and knows of none yet."""
-    return Tracker([level.name for level in settings.levels], settings.map.radius)
+    """What follows changes, and knows of none yet.
+
+    A window of one sample is no memory: as the fastest level it would have every passer-by undo what is suspected.
+    """
+    remembering = [level.name for level in settings.levels if level.window > 1]
+    return Tracker(remembering, settings.map.radius)
 
 
 def levels(settings: Settings) -> list[Level]:

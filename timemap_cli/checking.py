@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -58,14 +59,14 @@ def check(
     progress: Progress | None = None,
     look: Look | None = None,
 ) -> CheckedCase:
-    """Compare with the baseline; recordings are replayed with the baseline's nodes.
+    """Compare with the baseline; recordings are replayed with the baseline's nodes, as these came then.
 
     `look` is called with the result, what was expected and the verdict, while the result is there.
 
     Raises UsageError where there is no baseline or nothing can be compared, and what a replay raises.
     """
     baseline = baseline_file.read(one.baseline)
-    with _result(one, baseline.expected.nodes, progress) as (result, summary), ResultReader(result) as reader:
+    with _result(one, baseline.expected, progress) as (result, summary), ResultReader(result) as reader:
         verdict = compare(
             baseline.expected,
             taken(reader),
@@ -87,8 +88,10 @@ def update(one: Check, progress: Progress | None = None) -> Updated:
     else than a baseline stands there.
     """
     old = baseline_file.read(one.baseline) if one.baseline.exists() else None
-    nodes = old.expected.nodes if old else ()
-    with _result(one, nodes, progress) as (result, summary), ResultReader(result) as reader:
+    with (
+        _result(one, old.expected if old else None, progress) as (result, summary),
+        ResultReader(result) as reader,
+    ):
         found = taken(reader)
     tolerances = {**(old.tolerances if old else {}), **one.tolerances}
     with AtomicFile(
@@ -130,7 +133,7 @@ def _against(old: Baseline | None, found: Snapshot, one: Check) -> Verdict | Non
 
 @contextmanager
 def _result(
-    one: Check, nodes: Sequence[Node], progress: Progress | None
+    one: Check, expected: Snapshot | None, progress: Progress | None
 ) -> Iterator[tuple[Path, ReplaySummary | None]]:
     """The result that is checked: itself, or what a replay of the recordings makes for the while."""
     results = [source for source in one.sources if is_result(source)]
@@ -143,19 +146,23 @@ def _result(
         yield results[0], None
         return
     with TemporaryDirectory(prefix="timemap-check-") as folder:
-        yield from _replayed(one, nodes, Path(folder), progress)
+        yield from _replayed(one, expected, Path(folder), progress)
 
 
 def _replayed(
-    one: Check, nodes: Sequence[Node], folder: Path, progress: Progress | None
+    one: Check, expected: Snapshot | None, folder: Path, progress: Progress | None
 ) -> Iterator[tuple[Path, ReplaySummary]]:
     settings = load(one.config)
-    given = folder / "nodes"
-    lines = [f"{node.x}, {node.y}\n" for node in nodes or _laid(one.sources, settings)]
-    given.write_text("".join(lines), encoding="utf-8")
     output = one.output or folder / "checked.timemap.mcap"
+    replaying = partial(replay, one.sources, output, settings, force=one.force, progress=progress)
+    if expected is not None and expected.laid:
+        yield output, replaying(likely=expected.nodes)
+        return
+    given = folder / "nodes"
+    nodes = expected.nodes if expected else _laid(one.sources, settings)
+    given.write_text("".join(f"{node.x}, {node.y}\n" for node in nodes), encoding="utf-8")
     try:
-        summary = replay(one.sources, output, settings, force=one.force, nodes=given, progress=progress)
+        summary = replaying(nodes=given)
     except UsageError as error:
         if str(given) not in error.message:
             raise

@@ -42,7 +42,7 @@ def compare_levels(result: Path, levels: tuple[str, str], at: str | None = None)
         if levels[0] == levels[1]:
             raise UsageError(f"level {levels[0]} cannot differ from itself", hint=_level_pair(result, reader))
         slower, faster = sorted(levels, key=reader.levels.index, reverse=True)
-        asked = f"--level {' '.join(levels)} --at {at}"
+        asked = f"--level {' '.join(levels)} --at"
         until_ns = _time_within(reader, result, "end" if at is None else at, asked)
         before, after = reader.estimates(slower, until_ns), reader.estimates(faster, until_ns)
         rules = Rules.of_level(is_fastest=faster == reader.levels[0])
@@ -120,15 +120,19 @@ def _level_pair(result: Path, reader: ResultReader) -> str | None:
 
 
 def _time_within(reader: ResultReader, result: Path, time: str, asked: str) -> int:
-    """A time of a result; UsageError before its first estimates, where `asked` is put to the result it goes on from."""
+    """A time of a result; UsageError before its first estimates, where `asked` is put to the result it goes on from.
+
+    What is asked with `--at` is asked with the time in full: a span from an end means another time there.
+    """
     stamp_ns = parse_time(time, reader.start_ns, reader.end_ns)
     if stamp_ns < reader.start_ns:
         span = f"from {format_time(reader.start_ns)} to {format_time(reader.end_ns)}"
         hint, before = "+10s or end-5s, counted from these", ""
         if (earlier := reader.resumed_from) is not None:
             name = earlier["name"]
+            time_there = f" {format_time(stamp_ns)}" if asked.endswith("--at") else ""
             hint, before = (
-                f"timemap diff {result.with_name(name)} {asked}\n{hint}",
+                f"timemap diff {result.with_name(name)} {asked}{time_there}\n{hint}",
                 f", it goes on from {name}",
             )
         raise UsageError(f"{result} knows nothing at {time}: its estimates go {span}{before}", hint=hint)

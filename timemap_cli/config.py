@@ -50,7 +50,7 @@ class LevelSettings:
     """One time scale of memory."""
 
     name: str = setting(dataclasses.MISSING, Text(r"[a-z][a-z0-9_]*"), "name of the level")
-    window: int = setting(dataclasses.MISSING, Number(2, 1000, "samples", whole=True), "remembered ranges")
+    window: int = setting(dataclasses.MISSING, Number(1, 1000, "samples", whole=True), "remembered ranges")
     half_life: HalfLife = setting(
         dataclasses.MISSING, SpanOf(0.5, 1e9, ("obs", "s")), "until half is replaced"
     )
@@ -249,7 +249,7 @@ def _check_levels(levels: tuple[LevelSettings, ...]) -> None:
                 f"level {level.name}: a window of {level.window} samples cannot have a half-life of "
                 f"{level.half_life}, its shortest is {shortest:.1f}obs",
                 hint=f"half_life: {math.ceil(shortest)}obs, or "
-                f"window: {max(2, math.floor(level.half_life.value / math.log(2)))}",
+                f"window: {max(1, math.floor(level.half_life.value / math.log(2)))}",
             )
     for faster, slower in pairwise(levels):
         comparable = faster.half_life.unit == slower.half_life.unit

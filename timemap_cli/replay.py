@@ -18,6 +18,7 @@ from timemap_cli.logs.pose_quality import JUMP, UNCERTAIN
 from timemap_cli.logs.recordings import Recording, open_recordings
 from timemap_cli.logs.survey import Survey, survey
 from timemap_cli.model.learner import Kept
+from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import MOST_NODES
 from timemap_cli.overridden import overridden
 from timemap_cli.reports.changes_json import changes_document
@@ -61,6 +62,7 @@ def replay(
     *,
     force: bool = False,
     nodes: Path | None = None,
+    likely: Sequence[Node] = (),
     start: str | None = None,
     end: str | None = None,
     resume: Path | None = None,
@@ -68,8 +70,9 @@ def replay(
 ) -> ReplaySummary:
     """Replay recordings in time order through a map of nodes that remember, into a result file.
 
-    `nodes` gives all nodes there will be; `start` (closed) and `end` (open) cut by the scans' stamps; `resume` is a
-    result of earlier recordings, to go on from with the same settings: the map becomes what it would be if all were
+    `nodes` gives all nodes there will be; a node that is due near a `likely` one is made there; `start` (closed) and
+    `end` (open) cut by the scans' stamps; `resume` is a result of earlier recordings, to go on from with the same
+    settings: the map becomes what it would be if all were
     replayed in one go. An existing `output` is replaced only with `force`, and only when the new one is complete.
     Raises TimemapError.
     """
@@ -82,11 +85,11 @@ def replay(
         plan = _surveyed(recordings, settings, earlier)
         given = read_nodes(nodes, plan.selection.map_frame) if nodes else ()
         result = stack.enter_context(_result(output, settings, plan, force=force))
-        observing = Observing(recordings, plan, assembly.observer(settings, given))
-        writing = Writing(result, assembly.tracker(settings))
+        observing = Observing(recordings, plan, assembly.observer(settings, given, likely))
+        writing = Writing(result, [level.name for level in settings.levels], assembly.tracker(settings))
         start_ns, end_ns = _span_ns(plan, start, end)
         if earlier is not None:
-            earlier.require_before(plan.span_ns[0] if start_ns is None else start_ns)
+            earlier.require_before(logs, plan.span_ns, start_ns)
             observing.restore(earlier.reading)
             writing.restore(earlier.parts(), observing.nodes)
         learning = partial(assembly.learner, settings, given)
@@ -102,7 +105,7 @@ def replay(
             writing.take(answer, observing.nodes)
             if progress is not None:
                 progress(_share_done(plan, observing.newest_ns), observing.counts.read)
-        summary = _summary(output, settings, plan, observing, writing, time.perf_counter() - began)
+        summary = _summary(output, settings, plan, observing, writing, resume, time.perf_counter() - began)
         _require_some_use(summary, plan, start=start, end=end, nodes=nodes)
         metadata = _metadata(settings, recordings, summary, resume)
         changes = changes_document(writing.tracker.events, observing.newest_ns)
@@ -157,10 +160,18 @@ def _share_done(plan: Survey, now_ns: int | None) -> float:
 
 
 def _summary(
-    output: Path, settings: Settings, plan: Survey, observing: Observing, writing: Writing, seconds: float
+    output: Path,
+    settings: Settings,
+    plan: Survey,
+    observing: Observing,
+    writing: Writing,
+    resume: Path | None,
+    seconds: float,
 ) -> ReplaySummary:
     read, dropped = observing.counts.read, observing.counts.dropped
-    warnings = (*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks)
+    warnings = [*plan.selection.warnings, *plan.problems, *observing.damage, *observing.remarks]
+    if observing.pause is not None:
+        warnings.append(observing.pause.told(resume))
     too_many = _too_many_dropped(dropped, read, settings.input.max_dropped)
     return ReplaySummary(
         result=output,

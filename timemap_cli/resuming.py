@@ -1,6 +1,6 @@
 """Going on where an earlier replay stopped: its settings, what it chose to read, and all that it kept."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -35,6 +35,7 @@ class Earlier:
     nodes: tuple[Node, ...]  # all that the earlier replay made, also those that nothing was learnt of
     known: Known  # what was found out about the recordings so far
     to_read_by: Settings  # with what the earlier replay chose to read, so that this one chooses the same
+    resumed_from: str | None  # name of the result that it goes on from itself
 
     @classmethod
     def of(cls, path: Path) -> "Earlier":
@@ -51,7 +52,8 @@ class Earlier:
             static = StaticTransforms.of((), without_prefix("stream.static", reading))
             chosen = _chosen(reading["selection"])
             known = Known(static.earlier, found, chosen)
-            return cls(path, settings, reading, nodes, known, _read_by(settings, chosen))
+            read_by = _read_by(settings, chosen)
+            return cls(path, settings, reading, nodes, known, read_by, result.resumed_from)
 
     def damage_told(self) -> AbstractContextManager[None]:
         """Inside it, what comes of parts that do not fit together is a TimemapError.
@@ -71,17 +73,47 @@ class Earlier:
             if kept.part in (Part.LEARNING, Part.NODE):
                 yield Kept(kept.node if kept.part is Part.NODE else None, kept.state)
 
-    def require_before(self, begin_ns: int) -> None:
-        """UsageError for scans that begin earlier than this result ends, by more than may come out of order."""
+    def require_before(self, logs: Sequence[Path], span_ns: tuple[int, int], start_ns: int | None) -> None:
+        """UsageError for recordings of this span that, or whose `start_ns`, lie before the end of this result.
+
+        By no more than may come out of order.
+        """
+        begin_ns = span_ns[0] if start_ns is None else start_ns
+        if begin_ns >= self.end_ns - WINDOW_NS:
+            return
+        if span_ns[1] > self.end_ns:
+            hint = f"the days in their order; to replay only what is not known yet: --start {format_time(self.end_ns)}"
+        else:
+            hint = f"the days in their order\n{self._way_back(logs, begin_ns)}"
+        raise UsageError(
+            f"the recordings begin at {format_time(begin_ns)}, before {self.path} ends ({format_time(self.end_ns)})",
+            hint=hint,
+        )
+
+    @property
+    def end_ns(self) -> int:
+        """Stamp of its newest scan."""
         clock_ns, newest_ns = self.reading["stream.window.clock_ns"], self.reading["newest_ns"]
-        end_ns = (
-            newest_ns if clock_ns < 0 and newest_ns is not None else clock_ns
-        )  # a last drive without scans
-        if begin_ns < end_ns - WINDOW_NS:
-            raise UsageError(
-                f"the recordings begin at {format_time(begin_ns)}, before {self.path} ends ({format_time(end_ns)})",
-                hint=f"the days in their order; to replay only what is not known yet: --start {format_time(end_ns)}",
-            )
+        is_silent = clock_ns < 0 and newest_ns is not None  # the last drive had no scans
+        return int(newest_ns if is_silent else clock_ns)
+
+    def _way_back(self, logs: Sequence[Path], begin_ns: int) -> str:
+        """A hint: the newest result of before a time that this one goes on from, if they lie beside each other."""
+        passed, one = {self.path}, self
+        while one.resumed_from is not None:
+            path = one.path.with_name(one.resumed_from)
+            if path in passed or not path.is_file():
+                break
+            passed.add(path)
+            try:
+                one = Earlier.of(path)
+            except TimemapError:  # another file took its place, perhaps
+                break
+            if begin_ns >= one.end_ns - WINDOW_NS:
+                told = f"timemap replay {' '.join(map(str, logs))} --resume {path}"
+                return f"if the clock of a later day was wrong, go on from a result of before it:\n{told}"
+        named = f"resume {one.resumed_from}, which {one.path} goes on from, or " if one.resumed_from else ""
+        return f"if the clock of a later day was wrong: {named}replay all others in one go"
 
     def require_same(self, settings: Settings) -> None:
         """UsageError for settings that differ from the earlier replay's, by name."""

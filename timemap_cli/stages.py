@@ -3,9 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 
-import numpy as np
-import numpy.typing as npt
-
 from timemap_cli.changes.tracker import Tracker
 from timemap_cli.logs.coming import Coming, EndOfRecording, Resumed, ScanCounts, Waiting
 from timemap_cli.logs.drive_stream import LEAST_SCANS
@@ -18,10 +15,9 @@ from timemap_cli.model.nodes import Node
 from timemap_cli.model.observer import Observations, Observer, gathered
 from timemap_cli.model.state import State, prefixed, without_prefix
 from timemap_cli.model.sweeps import Sweeps
+from timemap_cli.pauses import Pause, longest
 from timemap_cli.results.state_messages import Part, StatePart
 from timemap_cli.results.writer import ResultWriter
-
-Ints = npt.NDArray[np.int64]
 
 
 class Observing:
@@ -32,6 +28,7 @@ class Observing:
         self.used = 0
         self.newest_ns: int | None = None
         self.began_anew = False  # stamps went back from one recording to the next
+        self.pause: Pause | None = None  # the first that no robot makes
         self.state: State = {}  # what a later replay needs, once `steps` asks the memory for its part
         self._recordings = recordings
         self._plan = plan
@@ -135,19 +132,22 @@ class Observing:
         self.counts.drop("no_node", seen.no_node)
         if len(seen):
             self.began_anew |= self.newest_ns is not None and int(seen.stamps_ns[0]) < self.newest_ns
+            self.pause = self.pause or longest(self.newest_ns, seen.stamps_ns)
             self.newest_ns = int(seen.stamps_ns[-1])
 
 
 class Writing:
     """Writes what was learnt into the result, and follows the changes in it."""
 
-    def __init__(self, result: ResultWriter, tracker: Tracker) -> None:
+    def __init__(self, result: ResultWriter, levels: Sequence[str], tracker: Tracker) -> None:
+        """`levels` are all there are; the tracker may leave out some."""
         self.tracker = tracker
         self.nodes: Sequence[Node] = ()
         self.shortfalls: Mapping[str, float] = {}
         self._result = result
-        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in tracker.levels}
-        self._newest_ns = self._kept_ns = 0
+        self._latest: dict[str, dict[int, Estimate]] = {level: {} for level in levels}
+        self._newest_ns = 0
+        self._round_ns: int | None = None  # newest scan of the newest round of this result
         self._maps_are_due = False
         self._maps_are_missing = False  # an earlier result had them, and this one has none
         self._is_new = True  # what comes; else an earlier result has it
@@ -188,7 +188,6 @@ class Writing:
     def keep(self, kept: Kept, reading: State) -> None:
         """Write a part of what a later replay needs; the first one brings the `reading` side's along."""
         if kept.node is None:
-            self._kept_ns = self._time_of_state(reading["stream.window.stamp"])
             changes = {
                 "maps_are_due": self._maps_are_due,
                 "nodes": len(self.nodes),
@@ -201,14 +200,9 @@ class Writing:
         else:
             self._keep(Part.NODE, kept.state | self._kept_of(kept.node), kept.node)
 
-    def _time_of_state(self, waiting_ns: Ints) -> int:
-        """When the state is logged: not before what is new, lest a result span the time between two replays."""
-        if self._is_known_to_all and self._newest_ns:
-            return self._newest_ns
-        return int(waiting_ns.min()) if len(waiting_ns) else self._newest_ns
-
     def _keep(self, part: Part, state: State, node: int = 0) -> None:
-        self._result.write_state(StatePart(part, node, state), self._kept_ns)
+        """The state is logged with the round before it: what comes of the scans that wait is not pushed behind it."""
+        self._result.write_state(StatePart(part, node, state), self._round_ns)
 
     def _kept_of(self, node: int) -> State:
         state = prefixed("before", self.tracker.kept_before(node))
@@ -225,13 +219,15 @@ class Writing:
 
     def _follow(self, made: Round, nodes: Sequence[Node]) -> None:
         if self._is_new:
+            self._round_ns = made.newest_ns
             self._write(made, nodes)
         if made.estimates:
             self.nodes, self._newest_ns = nodes, made.newest_ns
         for estimate in made.estimates:
             self._latest[estimate.level][estimate.node] = estimate
             self._maps_are_due = True
-        found = self.tracker.update(nodes, self._latest, made.estimates)
+        followed = [estimate for estimate in made.estimates if estimate.level in self.tracker.levels]
+        found = self.tracker.update(nodes, self._latest, followed)
         if found and self._is_new:
             self._result.write_changes(found, self.tracker.events, made.newest_ns)
 

@@ -8,6 +8,7 @@ from benchmarks.paper.section import Scale, Section
 NAMES = (
     "fig6",
     "fig7",
+    "unseen",
     "fig8",
     "table1",
     "removed",

@@ -72,6 +72,8 @@ def test_all_events_are_told_in_order_of_time(result):
         (["--holding"], [0, 2]),
         (["--since", "+9s"], [0, 2]),  # an episode ends just before its end
         (["--since", "+8.5s"], [0, 1, 2]),
+        (["--since", "11s"], [0, 2]),  # 11 s before the end, at 20 s
+        (["--since", "12s"], [0, 1, 2]),
         (["--until", "+6s"], [0, 1]),
         (["--since", "+5.5s", "--until", "+7.5s"], [0, 2]),  # event 1 was undone just then
         (["--region", 0, 0, 0.5, 0.5], [2]),
@@ -177,3 +179,11 @@ def test_what_cannot_be_meant_is_one_error(result, args, said):
 def test_a_region_the_wrong_way_round_is_proposed_the_right_way_round(result):
     ran = timemap("changes", result, "--region", 3, 1.5, 0, 2)
     assert ran.err.splitlines()[1:] == ["  try: --region 0 1.5 3 2"]
+
+
+@pytest.mark.parametrize("option", ["--since", "--until"])
+def test_a_bare_number_is_no_time_of_these_years(result, option):
+    ran = timemap("changes", result, option, "5")
+    assert ran.code == 2
+    assert "'5' alone is nanoseconds since 1970" in ran.err
+    assert "+10s" in ran.err

@@ -142,7 +142,11 @@ def test_without_any_result_it_is_a_usage_error(tmp_path, monkeypatch):
         ("{r} --level long slow", "has no level 'slow', only short, mid, long"),
         ("{r} --level long long", "cannot differ from itself"),
         ("{r} --level long mid --at soon", "'soon' is not a time"),
-        ("{r} --level long mid --at 5", "knows nothing at 5: its estimates go from 2023-11-14T22:13:20Z to"),
+        (
+            "{r} --level long mid --at 2d",
+            "knows nothing at 2d: its estimates go from 2023-11-14T22:13:20Z to",
+        ),
+        ("{r} --level long mid --at 5", "'5' alone is nanoseconds since 1970"),
         ("{r} --level mid --between 5", "requires 2 arguments"),
         ("{r} --between +1s --level mid", "--between needs two times"),
         ("{r} --level long mid --at=", "'' is not a time"),
@@ -162,12 +166,14 @@ def test_a_time_before_a_resumed_result_is_to_be_asked_of_the_one_it_goes_on_fro
     boxes = [(0, all_levels(False)), (9, all_levels(False))]
     later = write(tmp_path / "r.timemap.mcap", boxes, metadata={"resumed_from": earlier})
     monday = tmp_path / "monday.timemap.mcap"
-    ran = timemap("diff", later, "--level", "mid", "--between", "5", "end")
+    ran = timemap("diff", later, "--level", "mid", "--between", "2023-11-14", "end")
     assert ran.code == 2
     assert ran.err.splitlines()[0].endswith(", it goes on from monday.timemap.mcap")
     assert ran.err.splitlines()[1] == f"  try: timemap diff {monday} {later} --level mid"
-    ran = timemap("diff", later, "--level", "long", "mid", "--at", "5")
-    assert ran.err.splitlines()[1] == f"  try: timemap diff {monday} --level long mid --at 5"
+    ran = timemap("diff", later, "--level", "long", "mid", "--at", "1d")
+    assert (
+        ran.err.splitlines()[1] == f"  try: timemap diff {monday} --level long mid --at 2023-11-13T22:13:29Z"
+    )
 
 
 def test_a_missing_result_is_a_usage_error(tmp_path):

@@ -145,6 +145,8 @@ def _lines(baseline: Baseline) -> Iterator[str]:
     yield f"scans: {{read: {one.scans.read}, used: {one.scans.used}, dropped: {{{dropped}}}}}"
     yield from _mapping("tolerances", dict(sorted(baseline.tolerances.items())))
     yield from _list("events", [_event_values(event) for event in one.events])
+    if one.laid is not None:
+        yield f"laid: {_quoted(one.laid)}"
     yield from _rows("nodes", {str(i): {"x": node.x, "y": node.y} for i, node in enumerate(one.nodes)})
     yield from _RINGS_NOTE
     yield "levels:"
@@ -224,6 +226,7 @@ def _baseline(values: Fields, path: Path) -> Baseline:
         nodes=nodes,
         levels=_levels(values.part("levels"), len(nodes), bins),
         events=tuple(_event(one) for one in values.rows("events")),
+        laid=values.flag("laid"),
     )
     return Baseline(expected, checked(values.part("tolerances").plain(), str(path)))
 

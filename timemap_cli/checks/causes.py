@@ -16,6 +16,9 @@ def likely_causes(expected: Snapshot, found: Snapshot, failures: Sequence[Measur
         return
     for setting in changed_settings(expected.settings, found.settings):
         yield f"a setting was changed: {setting}"
+    if None is not expected.laid is not found.laid is not None:
+        known, laid = ("baseline", "result") if found.laid else ("result", "baseline")
+        yield f"the nodes of the {known} were known from the start, those of the {laid} were made on the way"
     if expected.no_return != found.no_return:
         yield f"a missing return means '{found.no_return}' now and meant '{expected.no_return}': {_NO_RETURN}"
     if beams := failed.get("beams.kinds"):

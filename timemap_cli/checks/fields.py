@@ -78,6 +78,13 @@ class Fields:
         """Every value as a count, by its key, which is a text."""
         return {name: self.whole(name) for name in self._names()}
 
+    def flag(self, key: str) -> bool | None:
+        """True or false; None where it is missing."""
+        value = self._values.get(key)
+        if not isinstance(value, bool | None):
+            raise ValueError(f"{self._at(key)} is neither true nor false")
+        return value
+
     def plain(self) -> dict[str, object]:
         """The values as they are, by their keys, which are texts."""
         return {name: self._values[name] for name in self._names()}

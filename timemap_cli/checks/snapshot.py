@@ -80,3 +80,4 @@ class Snapshot:
     nodes: Sequence[Node]
     levels: Mapping[str, LevelRings]  # fastest first
     events: tuple[SeenEvent, ...]
+    laid: bool | None = None  # nodes were made on the way, not known from the start; None: not known

@@ -46,6 +46,7 @@ def taken(reader: ResultReader) -> Snapshot:
         nodes=tuple(reader.nodes),
         levels={level: _rings(reader, level) for level in reader.levels},
         events=tuple(_event(event) for event in reader.changes["events"]),
+        laid=None if (given := reader.nodes_were_given) is None else not given,
     )
 
 

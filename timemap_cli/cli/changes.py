@@ -28,7 +28,7 @@ _KINDS = ("appeared", "vanished", "moved")
 )
 @click.option("--min-size", type=click.FloatRange(0), default=0.0, metavar="M", help="Least diagonal [m].")
 @click.option(
-    "--min-age", metavar="SPAN", help="Least time from the first to the last sighting: 30s, 10min, 12h."
+    "--min-age", metavar="SPAN", help="Least time from the first to the last sighting: 30s, 10min, 12h, 2d."
 )
 @click.option("--holding", is_flag=True, help="Only what still holds.")
 @click.option("--sort", type=click.Choice(list(ORDERS)), default="time", help="Order. [default: time]")
@@ -41,8 +41,8 @@ def changes(
 ) -> ExitCode:
     """Tell what changed over time: appeared, vanished or moved, since when, and which levels have adopted it.
 
-    Without RESULT, the newest *.timemap.mcap in the current folder is taken. TIME is +10s or end-5s, RFC 3339, or
-    nanoseconds since 1970.
+    Without RESULT, the newest *.timemap.mcap in the current folder is taken. TIME is a date, RFC 3339, +10s from the
+    start, 2d back from the end, or nanoseconds since 1970.
     """
     from timemap_cli.comparing import require_level
     from timemap_cli.results.reader import ResultReader
@@ -91,7 +91,7 @@ def _nanoseconds(span: str) -> int:
     try:
         parsed = Span.parse(span)
     except ValueError as error:
-        message = f"--min-age '{span}' is not a number with one of the units s, min, h"
+        message = f"--min-age '{span}' is not a number with one of the units s, min, h, d"
         raise UsageError(message, hint="--min-age 10min") from error
     if parsed.unit != "s":
         raise UsageError("--min-age is a time", hint="--min-age 10min")

@@ -78,7 +78,8 @@ def diff(
       timemap diff RESULT OTHER --level long
 
     "From" is always the slower level or the earlier time. Without RESULT, the newest *.timemap.mcap in the
-    current folder is taken. TIME is +10s or end-5s, RFC 3339, or nanoseconds since 1970.
+    current folder is taken. TIME is a date, RFC 3339, +10s from the start, 2d back from the end, or nanoseconds since
+    1970.
     """
     _check_usage(results, levels, at, between)
 

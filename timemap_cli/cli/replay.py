@@ -48,7 +48,9 @@ _SUFFIXES = (".mcap", ".bag", ".db3", ".zstd")
     help="Share of scans that may be lost before exit code 3.",
 )
 @click.option(
-    "--start", metavar="TIME", help="Leave out scans before: +10s, end-5s, RFC 3339 or nanoseconds."
+    "--start",
+    metavar="TIME",
+    help="Leave out scans before: a date, RFC 3339, +10s, or 2d for the last 2 days.",
 )
 @click.option("--end", metavar="TIME", help="Leave out scans from here on.")
 @click.option(

@@ -17,6 +17,7 @@ class Level:
     The half-life counts scans of the node that reached the level, or seconds in which the node was observed.
     Each scan that is taken replaces one of N samples, so n of them leave the share (1 - 1/N)^n of what was there.
     A level that takes one scan of every 1/q keeps its half-life with q = (ln 2 / half-life) / -ln(1 - 1/N).
+    A window of one sample with a half-life of one scan or less takes every scan: it is the last observation as it is.
     """
 
     name: str
@@ -32,5 +33,7 @@ class Level:
         """
         forgotten = math.log(2) / self.half_life * step
         if self.window == 1:
+            if not self.in_seconds and self.half_life <= 1:
+                return step
             return -math.expm1(-forgotten)
         return forgotten / -float(logarithms(np.array(1 - 1 / self.window)))

@@ -79,10 +79,20 @@ class Observer:
     """Gives every scan to its node and turns it into what it would have been from there."""
 
     def __init__(
-        self, gate: Gate, *, angle_bins: int, radius: float, spacing: float, nodes: Sequence[Node] = ()
+        self,
+        gate: Gate,
+        *,
+        angle_bins: int,
+        radius: float,
+        spacing: float,
+        nodes: Sequence[Node] = (),
+        likely: Sequence[Node] = (),
     ) -> None:
-        """`radius`: how far a node looks [m]; `spacing` [m] as in Placement; given `nodes` are all there will be."""
-        self._placement = Placement(spacing, nodes)
+        """`radius`: how far a node looks [m]; given `nodes` are all there will be.
+
+        `spacing` [m] and `likely` are as in Placement.
+        """
+        self._placement = Placement(spacing, nodes, likely)
         self._gate = gate
         self._passages: Passages = {}
         self._ways = FreeWays()

@@ -18,11 +18,16 @@ MOST_NODES = 10_000  # bounds the memory; the aisles of a hall of 100 m by 100 m
 class Placement:
     """The nodes of a map in the order in which they were made; none ever moves."""
 
-    def __init__(self, spacing: float, given: Sequence[Node] = ()) -> None:
-        """`spacing` [m]: a scan farther than this from every node makes one, unless all nodes are given."""
+    def __init__(self, spacing: float, given: Sequence[Node] = (), likely: Sequence[Node] = ()) -> None:
+        """`spacing` [m]: a scan farther than this from every node makes one, unless all nodes are given.
+
+        It is made where the scan was taken, or at the nearest of the `likely` nodes that is left within the spacing:
+        so nodes come where they came in another replay, and when the robot first needs them.
+        """
         self.nodes = list(given)
         self.all_given = bool(given)
         self._spacing = spacing
+        self._likely = list(likely)
 
     @property
     def centres(self) -> Floats:
@@ -81,9 +86,18 @@ class Placement:
 
     def _make(self, place: Floats) -> Floats:
         """Make a node and return its centre (2,): whole millimetres, as it is a key of its random numbers."""
-        x, y = (round(value, 3) for value in place.tolist())
-        self.nodes.append(Node(x, y))
-        return np.array([x, y])
+        node = self._likely_at(place) or Node(*(round(value, 3) for value in place.tolist()))
+        self.nodes.append(node)
+        return np.array([node.x, node.y])
+
+    def _likely_at(self, place: Floats) -> Node | None:
+        made = set(self.nodes)
+        left = [node for node in self._likely if node not in made]
+        if not left:
+            return None
+        squared = _squared_distances(place[None], np.array([(node.x, node.y) for node in left]))[0]
+        nearest = int(squared.argmin())
+        return left[nearest] if squared[nearest] <= self._spacing * self._spacing else None
 
     def _nearest(self, places: Floats) -> tuple[Ints, Floats]:
         """Nearest node (n,) of each place and the square of how far it is [m^2]; NO_NODE, inf if there is none."""

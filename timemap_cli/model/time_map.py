@@ -40,6 +40,8 @@ class TimeMap:
         for memory in self._memories:
             memory.add_nodes(self.nodes)
         self._changed: list[set[int]] = [set() for _ in levels]
+        # A last observation before it does not make a level a slower one.
+        self._gated = [any(faster.window > 1 for faster in levels[:i]) for i in range(len(levels))]
 
     @property
     def shortfalls(self) -> dict[str, float]:
@@ -50,9 +52,9 @@ class TimeMap:
         """Remember: the fastest level is offered every scan, slower ones those that passed the gate."""
         known = int(seen.nodes.max(initial=-1)) + 1
         self.nodes += seen.all_nodes[len(self.nodes) : known]
-        for level, (memory, changed) in enumerate(zip(self._memories, self._changed, strict=True)):
+        for memory, changed, gated in zip(self._memories, self._changed, self._gated, strict=True):
             memory.add_nodes(self.nodes)
-            rows = seen.passes if level else slice(None)
+            rows = seen.passes if gated else slice(None)
             changed.update(
                 memory.remember(seen.nodes[rows], seen.stamps_ns[rows], seen.ranges[rows]).tolist()
             )

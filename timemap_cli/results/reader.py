@@ -159,6 +159,14 @@ class ResultReader:
         """Whether this timemap can go on from it."""
         return self.metadata.get("state") == STATE_FORMAT
 
+    @property
+    def nodes_were_given(self) -> bool | None:
+        """Whether its nodes were known from the start, not made on the way; None where that cannot be told."""
+        if not self.can_be_resumed:
+            return None
+        given = next((kept.state.get("observer.all_given") for kept in self.state()), None)
+        return given if isinstance(given, bool) else None
+
     def count(self, topic: str) -> int:
         """How many messages a topic has."""
         return self._file.count(topic)

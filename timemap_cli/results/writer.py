@@ -1,6 +1,7 @@
 """Writes a result: one MCAP that ROS 2 tools open, and that timemap reads back to the last bit."""
 
 import json
+import pickle
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -8,6 +9,7 @@ from typing import IO, Any, Self, cast
 
 import numpy as np
 from mcap.writer import CompressionType, IndexType, Writer
+from zstandard import compress, decompress
 
 from timemap_cli import __version__
 from timemap_cli.changes.events import Event, Transition
@@ -61,6 +63,7 @@ class ResultWriter:
         self._counts: dict[int, int] = {}
         self._first_ns: int | None = None
         self._now_ns = 0
+        self._held_state: list[bytes] = []  # packed: a resumed map may be large
         self._file = AtomicFile(path, force=force, may_replace=is_result)
         self._mcap = Writer(
             cast(IO[bytes], self._file), compression=CompressionType.ZSTD, index_types=IndexType.ALL
@@ -144,8 +147,14 @@ class ResultWriter:
         newest_ns = max((one.stamp_ns for one in estimates), default=stamp_ns)
         self.write_estimates(estimates, max(stamp_ns, newest_ns))  # newer where a clock began anew
 
-    def write_state(self, kept: StatePart, stamp_ns: int) -> None:
-        """Write a part of what a later replay needs, when the newest scan replayed was `stamp_ns`."""
+    def write_state(self, kept: StatePart, stamp_ns: int | None) -> None:
+        """Write a part of what a later replay needs, when the newest scan replayed was `stamp_ns`.
+
+        None: nothing was replayed yet. Then it is held back, and logged with what comes first.
+        """
+        if stamp_ns is None:
+            self._held_state.append(compress(pickle.dumps(kept)))
+            return
         now_ns = self._advance(stamp_ns)
         message = pack_state(kept, now_ns, self._map_frame)
         self._add(channels.STATE_TOPIC, definitions.STATE, message, now_ns, latched=False)
@@ -208,6 +217,9 @@ class ResultWriter:
         """Log time of a message with this stamp."""
         if self._first_ns is None:
             self._first_ns = self._now_ns = stamp_ns
+            for kept in self._held_state:
+                self.write_state(pickle.loads(decompress(kept)), stamp_ns)
+            self._held_state.clear()
         self._now_ns = max(self._now_ns, stamp_ns)
         return self._now_ns
 

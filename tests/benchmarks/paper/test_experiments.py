@@ -33,6 +33,12 @@ def test_the_hidden_part_follows_the_visible_one_from_either_side(side):
     assert found[f"window 40 median {side} mixed"] > 0.8
 
 
+def test_a_part_that_was_never_seen_is_included_immediately():
+    found = numbers("unseen")
+    assert found["mid of the room ours"] == 1
+    assert found["mid of the object ours"] <= 3
+
+
 def test_wrong_poses_below_a_half_leave_the_map_right():
     found = numbers("fig8")
     assert found["mid 0.1 error"] < 0.01
