@@ -53,7 +53,9 @@ class Earlier:
             chosen = _chosen(reading["selection"])
             known = Known(static.earlier, found, chosen)
             read_by = _read_by(settings, chosen)
-            return cls(path, settings, reading, nodes, known, read_by, result.resumed_from)
+            before = result.resumed_from
+            name = None if before is None else before["name"]
+            return cls(path, settings, reading, nodes, known, read_by, name)
 
     def damage_told(self) -> AbstractContextManager[None]:
         """Inside it, what comes of parts that do not fit together is a TimemapError.

@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 
+from timemap_cli.changes.difference import Kind
+from timemap_cli.changes.ghosts import without_ghosts
 from timemap_cli.changes.tracker import Tracker
 from timemap_cli.logs.coming import Coming, EndOfRecording, Resumed, ScanCounts, Waiting
 from timemap_cli.logs.drive_stream import LEAST_SCANS
@@ -181,9 +183,22 @@ class Writing:
             self._follow(made, all_nodes[: made.nodes])
         if learnt.mark is Mark.RECORDING_ENDS and (self._maps_are_due or self._maps_are_missing):
             if self._is_new:
-                self._result.write_maps(self._latest, self.nodes, self._newest_ns)
+                self._result.write_maps(self._standing(), self.nodes, self._newest_ns)
             self._maps_are_due = self._maps_are_missing = False  # recordings may end together
         self._is_new |= learnt.mark is Mark.RESUMED
+
+    def _standing(self) -> dict[str, dict[int, Estimate]]:
+        """The newest estimates by level and node, without what other nodes have seen gone since."""
+        gone = [event for event in self.tracker.events if event.kind is Kind.VANISHED and event.holds]
+        return {
+            level: without_ghosts(
+                self.nodes,
+                latest,
+                [event for event in gone if event.adopted[level] is not None],
+                self.tracker.radius,
+            )
+            for level, latest in self._latest.items()
+        }
 
     def keep(self, kept: Kept, reading: State) -> None:
         """Write a part of what a later replay needs; the first one brings the `reading` side's along."""

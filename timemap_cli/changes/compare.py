@@ -73,7 +73,7 @@ def _fresh_bins(before: Side, now: Side, rules: Rules) -> Bools:
     was, shown = before.rings.ranges[rows], now.rings.ranges
     with np.errstate(invalid="ignore"):  # clear less clear
         same = (was == shown) | (np.abs(was - shown) <= step(np.minimum(was, shown), rules))
-    return now.firm & ~(known & same)
+    return np.asarray(now.firm & ~(known & same))
 
 
 def _seen_anew(before: Side, seers: Side, rules: Rules) -> Bools:

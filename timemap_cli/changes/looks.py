@@ -64,10 +64,9 @@ def _look(points: Floats, some: Ints, rows: Ints, side: Side, rules: Rules) -> L
     point, row, ranges = point[within], row[within], ranges[within]
     bins = _bins_towards(offset[within], places.angle_bins)
     at = row * places.angle_bins + bins
-    in_sight = np.flatnonzero(
-        side.farthest.take(at) >= ranges - step(ranges, rules)
-    )  # else something is before it
-    point, row, bins, ranges, at = (each[in_sight] for each in (point, row, bins, ranges, at))
+    in_sight = side.farthest.take(at) >= ranges - step(ranges, rules)  # else something is before it
+    point, row, bins, at = point[in_sight], row[in_sight], bins[in_sight], at[in_sight]
+    ranges = ranges[in_sight]
     past = side.firm.take(at) & seen_past(ranges, side.nearest.take(at), places.radius, rules)
     shown = np.zeros(len(at), np.bool_)
     rest = np.flatnonzero(~past)

@@ -63,7 +63,8 @@ class _Judge:
 
     def things(self) -> list[Thing]:
         """Those that are lost."""
-        contested, number = (np.zeros(self.having.firm.shape, kind) for kind in (np.bool_, np.int64))
+        contested = np.zeros(self.having.firm.shape, np.bool_)
+        number = np.zeros(contested.shape, np.int64)
         contested[self.rows, self.bins] = True
         number[self.rows, self.bins] = np.arange(len(self.rows))
         runs = find_runs(contested, self.having.rings.ranges, self.having.places, self.rules)

@@ -33,7 +33,7 @@ class Tracker:
     def __init__(self, levels: Sequence[str], radius: float, rules: Rules = _DEFAULT) -> None:
         """`levels` fastest first; `radius` [m] is how far a node sees. One level alone has no events."""
         self.levels = tuple(levels)
-        self._radius = radius
+        self.radius = radius
         self._rules = rules
         self._tracks: list[Track] = []
         self._reported = 0
@@ -70,7 +70,7 @@ class Tracker:
         """Take note of a round of estimates; `newest` holds them already. Returns what was found out."""
         if len(self.levels) < 2 or not renewed:
             return []
-        view = View.of({estimate.node for estimate in renewed}, nodes, newest, self.levels, self._radius)
+        view = View.of({estimate.node for estimate in renewed}, nodes, newest, self.levels, self.radius)
         if view is None:
             return []
         found: list[Transition] = []
@@ -88,7 +88,7 @@ class Tracker:
         before = {n: e for n, e in self._before.items() if view.has_in_reach(nodes[n])}
         if not before:
             return
-        held = Side.of(before, nodes, self._radius, self._rules)
+        held = Side.of(before, nodes, self.radius, self._rules)
         for level in reversed(self.levels):  # slower levels know the outline better
             rules = Rules.of_level(is_fastest=level == self.levels[0])
             renewed = {
@@ -97,7 +97,7 @@ class Tracker:
                 if n not in before or before[n].stamp_ns != e.stamp_ns
             }
             if renewed:
-                for change in news(held, Side.of(renewed, nodes, self._radius, rules), rules):
+                for change in news(held, Side.of(renewed, nodes, self.radius, rules), rules):
                     yield level, change
 
     def _sight(self, change: Change, level: str) -> list[Transition]:
