@@ -45,6 +45,7 @@ class SlotScore:
     told: int
     turns: int
     false: tuple[SlotClaim, ...]
+    again: int  # of these, told before by another claim
     at_once: int  # told on the first day
 
     @property
@@ -62,23 +63,21 @@ class SlotScore:
 def score_slots(claims: Iterable[SlotClaim], turns: Sequence[Turn]) -> SlotScore:
     """Judge claims, in the order of their days; a claim that tells only what was told before is false."""
     told: dict[tuple[int, int], int] = {}  # day of the claim by place and day of the turn
-    false = []
+    false, again = [], 0
     for claim in claims:
         here = [turn for turn in turns if turn.holds(claim.day) and _touches(claim, turn)]
         right = [(turn.place, turn.day) for turn in here if turn.kind is not None]
         new = [turn for turn in right if turn not in told]
-        if (
-            not here
-            or _beyond(claim.bounds, [turn.bounds for turn in here]) > BEYOND_M
-            or (right and not new)
-        ):
+        if not here or _beyond(claim.bounds, [turn.bounds for turn in here]) > BEYOND_M:
             false.append(claim)
+        elif right and not new:
+            false.append(claim)
+            again += 1
         else:
             told |= dict.fromkeys(new, claim.day)
     wanted = sum(turn.kind is not None for turn in turns)
-    return SlotScore(
-        len(told), wanted, tuple(false), sum(day == claimed for (_, day), claimed in told.items())
-    )
+    at_once = sum(day == claimed for (_, day), claimed in told.items())
+    return SlotScore(len(told), wanted, tuple(false), again, at_once)
 
 
 def _touches(claim: SlotClaim, turn: Turn) -> bool:

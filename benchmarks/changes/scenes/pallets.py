@@ -41,13 +41,14 @@ def _world(world: str, days: int, made: Path, work: Work) -> str:
     turns = turns_of(pallet_hall.stays(world, days), days)
     lines = [
         f"{world}, {days} days, {nodes} nodes, {replay.lost}",
-        f"  {'diff from day to day':24}{'told':>9}{'at once':>9}{'recall':>8}{'F1':>6}{'false':>7}{'compared':>10}",
+        f"  {'diff from day to day':24}{'told':>9}{'at once':>9}{'recall':>8}{'F1':>6}"
+        f"{'false':>7}{'again':>7}{'compared':>10}",
     ]
     for level in levels_of(result):
         scored, share = _of_level(result, level, truth, nodes, turns)
         lines.append(
             f"  {level:24}{f'{scored.told}/{scored.turns}':>9}{scored.at_once:>9}{scored.recall:>8.2f}"
-            f"{scored.f1:>6.2f}{len(scored.false):>7}{share:>10.1%}"
+            f"{scored.f1:>6.2f}{len(scored.false):>7}{scored.again:>7}{share:>10.1%}"
         )
     document = timemap_json("changes", str(result))
     left = {level: walls_left(result, document, level) for level in levels_of(result)}

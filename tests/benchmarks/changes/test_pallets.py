@@ -41,13 +41,13 @@ def test_one_claim_may_tell_neighbours():
 )
 def test_what_tells_no_turn_that_holds_is_false(one):
     score = score_slots([one], [turn(0, LEFT, until=4)])
-    assert (score.told, score.false) == (0, (one,))
+    assert (score.told, score.false, score.again) == (0, (one,), 0)
 
 
 def test_telling_the_same_again_is_false_and_telling_late_is_not_at_once():
     first, again = claim(LEFT, day=3), claim(LEFT, day=4)
     score = score_slots([first, again], [turn(0, LEFT)])
-    assert (score.told, score.false, score.at_once) == (1, (again,), 0)
+    assert (score.told, score.false, score.again, score.at_once) == (1, (again,), 1, 0)
 
 
 def test_what_was_filled_anew_may_be_told_or_not():
