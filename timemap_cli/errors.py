@@ -1,6 +1,8 @@
 """What may go wrong that a user can mend, and the exit codes."""
 
+import os
 import shlex
+import stat
 from enum import IntEnum
 from pathlib import Path
 
@@ -45,6 +47,21 @@ def no_such_file(path: Path, otherwise: str) -> UsageError:
     names = [one.name for one in path.parent.iterdir()] if path.parent.is_dir() else []
     near = [str(path.with_name(name)) for name in get_close_matches(path.name, sorted(names), 1)]
     return UsageError(f"there is no file {path}", hint=near[0] if near else otherwise)
+
+
+def refuse_pipe(path: Path) -> None:
+    """UsageError for a pipe, a socket or a device: to read from one is to wait for somebody, or never to end.
+
+    The null device is as good as an empty file; of what is missing whoever opens it tells.
+    """
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return
+    if stat.S_ISREG(mode) or stat.S_ISDIR(mode) or str(path) == os.devnull:
+        return
+    what = "a pipe" if stat.S_ISFIFO(mode) else "a socket" if stat.S_ISSOCK(mode) else "a device"
+    raise UsageError(f"{path} is {what}, not a file", hint="write what comes from it into a file first")
 
 
 def as_word(name: str) -> str:

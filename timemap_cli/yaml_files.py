@@ -5,13 +5,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, refuse_pipe
 
 SHOWN = "timemap config shows how settings are written"
 
 
 def read_yaml(path: Path, what: str = "settings", hint: str = SHOWN) -> Mapping[str, Any]:
     """A file of settings, or of something else, as nested mappings; UsageError where it is missing or not YAML."""
+    refuse_pipe(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:

@@ -12,7 +12,7 @@ from timemap_cli.checks.coding import decoded, encoded
 from timemap_cli.checks.fields import Fields
 from timemap_cli.checks.snapshot import Input, LevelRings, Scans, SeenEvent, Snapshot
 from timemap_cli.checks.tolerances import checked
-from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.errors import TimemapError, UsageError, no_such_file, refuse_pipe
 from timemap_cli.model.nodes import Node
 from timemap_cli.times import format_time, parse_time
 
@@ -57,6 +57,7 @@ def read(path: Path) -> Baseline:
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
 
+    refuse_pipe(path)
     try:
         with path.open("rb") as file:
             head = file.read(1000)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from timemap_cli.cli.chosen import begins_with
 from timemap_cli.cli.terminal import Terminal
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, refuse_pipe
 
 if TYPE_CHECKING:
     from timemap_cli.checks.verdict import CheckedCase
@@ -74,8 +74,11 @@ def tell(
 def _append(terminal: Terminal, summary: Path, text: str) -> None:
     """Add to the job's summary; one that cannot be written changes no verdict."""
     try:
-        with summary.open("a", encoding="utf-8") as stream:
+        refuse_pipe(summary)
+        with summary.open("a", encoding="utf-8", errors="backslashreplace") as stream:
             stream.write(text)
+    except UsageError as error:
+        terminal.warn(f"cannot write the job's summary: {error.message}")
     except OSError as error:
         terminal.warn(f"cannot write the job's summary {summary}: {(error.strerror or str(error)).lower()}")
 
