@@ -1,6 +1,7 @@
 """The layouts for viewers name what results hold."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from ruamel.yaml import YAML
 
 from tests.results.events import write_changing_room
 from tests.results.rooms import write_room
+from timemap_cli.results.definitions import CHANGE, STATE, STATUS
 
 VIEWERS = Path(__file__).parents[1] / "docs" / "viewers"
 RVIZ = ["timemap.rviz", "timemap_rviz2.rviz"]
@@ -108,3 +110,9 @@ def test_foxglove_panels_read_fields_of_changes(layout, topics):
         topic, _, field = path["value"].partition(".")
         assert topic == "/timemap/changes"
         assert f"string {field} " in definition
+
+
+def test_the_types_that_no_ros_knows_are_named():
+    told = (VIEWERS / "README.md").read_text()
+    assert set(re.findall(r"timemap_msgs/msg/\w+", told)) == {STATUS, CHANGE, STATE}
+    assert "leaves out the three types it does not know" in told

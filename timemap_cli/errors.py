@@ -1,6 +1,8 @@
 """What may go wrong that a user can mend, and the exit codes."""
 
+import os
 import shlex
+import stat
 from enum import IntEnum
 from pathlib import Path
 
@@ -81,6 +83,21 @@ def shown(value: object) -> str:
         text = reprlib.repr(value)
     text = " ".join(text.split())
     return text if len(text) <= _MOST_SHOWN else f"{text[: _MOST_SHOWN - 3]}..."
+
+
+def refuse_pipe(path: Path) -> None:
+    """UsageError for a pipe, a socket or a device: to read from one is to wait for somebody, or never to end.
+
+    The null device is as good as an empty file; of what is missing whoever opens it tells.
+    """
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return
+    if stat.S_ISREG(mode) or stat.S_ISDIR(mode) or str(path) == os.devnull:
+        return
+    what = "a pipe" if stat.S_ISFIFO(mode) else "a socket" if stat.S_ISSOCK(mode) else "a device"
+    raise UsageError(f"{path} is {what}, not a file", hint="write what comes from it into a file first")
 
 
 def as_word(name: str) -> str:

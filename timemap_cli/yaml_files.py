@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, refuse_pipe
 from timemap_cli.plain_yaml import SMALL, YamlError, plain_values, too_large
 
 SHOWN = "timemap config shows how settings are written"
@@ -13,6 +13,7 @@ SHOWN = "timemap config shows how settings are written"
 
 def read_yaml(path: Path, what: str = "settings", hint: str = SHOWN) -> Mapping[str, Any]:
     """A file of settings, or of something else, as nested mappings; UsageError where it is missing or not YAML."""
+    refuse_pipe(path)
     try:
         with path.open("rb") as file:
             content = file.read(SMALL.octets + 1)

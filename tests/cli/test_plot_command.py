@@ -107,11 +107,11 @@ def test_an_existing_picture_is_replaced_only_by_force(folder, image):
 
 
 def test_force_replaces_nothing_but_a_picture(folder):
-    before = (folder / "r.timemap.mcap").read_bytes()
-    ran = timemap("plot", "r.timemap.mcap", "-o", "r.timemap.mcap", "--force")
+    (folder / "mine.png").write_bytes(b"mine")
+    ran = timemap("plot", "r.timemap.mcap", "-o", "mine.png", "--force")
     assert ran.code == 2
-    assert "r.timemap.mcap exists and is not a PNG picture: it is not replaced" in ran.err
-    assert (folder / "r.timemap.mcap").read_bytes() == before
+    assert "mine.png exists and is not a PNG picture: it is not replaced" in ran.err
+    assert (folder / "mine.png").read_bytes() == b"mine"
 
 
 @pytest.mark.parametrize("args", [(), ("--node", "0")])

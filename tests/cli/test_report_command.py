@@ -51,12 +51,12 @@ def test_an_existing_page_is_replaced_only_by_force(folder, with_plotly):
 
 
 def test_force_replaces_nothing_but_a_page(folder, with_plotly):
-    result = folder / "r.timemap.mcap"
-    before = result.read_bytes()
-    ran = timemap("report", "r.timemap.mcap", "-o", "r.timemap.mcap", "--force")
+    mine = folder / "mine.html"
+    mine.write_text("<p>mine</p>")
+    ran = timemap("report", "r.timemap.mcap", "-o", "mine.html", "--force")
     assert ran.code == 2
-    assert ran.err.startswith("error: r.timemap.mcap exists and is not a page: it is not replaced\n")
-    assert result.read_bytes() == before
+    assert ran.err.startswith("error: mine.html exists and is not a page: it is not replaced\n")
+    assert mine.read_text() == "<p>mine</p>"
 
 
 def test_without_plotly_there_is_one_error_and_no_file(folder, monkeypatch):

@@ -146,6 +146,37 @@ def test_a_click_on_a_change_selects_it_and_a_node_that_tells_of_it(opened):
     assert low < GONE_AGAIN["x"] < high
 
 
+def click_line(driver, row, share):
+    """Click into a row of the time line, at a share of its width."""
+    from selenium.webdriver import ActionChains
+
+    line = element(driver, "#line")
+    driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", line)
+    x, y = driver.execute_script(
+        "const { xaxis, yaxis } = arguments[0]._fullLayout;"
+        "return [xaxis._offset + arguments[2] * xaxis._length, yaxis._offset + yaxis.d2p(arguments[1])];",
+        line,
+        row,
+        share,
+    )
+    middle_x, middle_y = line.size["width"] / 2, line.size["height"] / 2
+    ActionChains(driver).move_to_element_with_offset(line, x - middle_x, y - middle_y).pause(
+        0.2
+    ).click().perform()
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])  # at an end, in the middle and beside what is drawn
+@pytest.mark.parametrize("event", [GONE_AGAIN, APPEARED])
+def test_a_click_into_a_row_of_the_time_line_selects_its_change(opened, event, share):
+    ids = opened.execute_script("return DATA.changes.events.map((one) => one.id)")
+    click_line(opened, ids.index(event["id"]), share)
+    wait(opened).until(lambda driver: driver.find_elements("css selector", "#events tr.chosen"))
+    chosen = opened.find_elements("css selector", "#events tr.chosen")
+    assert [found.get_attribute("data-event") for found in chosen] == [str(event["id"])]
+    low, high = opened.execute_script("return document.getElementById('plan').layout.xaxis.range")
+    assert low < event["x"] < high
+
+
 def test_levels_are_switched_on_and_off(opened):
     assert plan(opened, "long") != []
     assert plan(opened, "short") == []

@@ -19,7 +19,7 @@ from timemap_cli.checks.snapshot import (
     require_comparable_size,
 )
 from timemap_cli.checks.tolerances import checked
-from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.errors import TimemapError, UsageError, no_such_file, refuse_pipe
 from timemap_cli.model.nodes import Node
 from timemap_cli.plain_yaml import Bounds, YamlError, plain_values
 from timemap_cli.times import format_time, parse_time
@@ -64,6 +64,7 @@ def read(path: Path) -> Baseline:
     Raises UsageError where there is none, where it is anything else, or for tolerances that are not known;
     TimemapError where it cannot be read or is damaged.
     """
+    refuse_pipe(path)
     try:
         with path.open("rb") as file:
             head = file.read(1000)

@@ -1,6 +1,5 @@
 """`timemap changes`: the change events of a result."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ from timemap_cli.cli.chosen import chosen_result
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
+from timemap_cli.file_names import json_text
 from timemap_cli.reports.event_selection import ORDERS, EventSelection, selected
 
 _KINDS = ("appeared", "vanished", "moved")
@@ -103,7 +103,7 @@ def _told(document: dict[str, Any], events: list[Any], levels: tuple[str, ...], 
 
     if form == "json":
         told = document | {"events": events, "summary": changes_json.summary(events)}
-        return json.dumps(told, indent=2, allow_nan=False)
+        return json_text(told, indent=2)
     if form == "csv":
         return changes_tables.changes_csv(events, levels)
     if form == "geojson":

@@ -8,6 +8,7 @@ import click
 
 from timemap_cli.cli import check_outputs as outputs
 from timemap_cli.cli.chosen import HTML, begins_with, title_of
+from timemap_cli.cli.outputs import PAGE, RESULT, require_file, required_suffix
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.progress import ProgressBar
 from timemap_cli.cli.terminal import Terminal
@@ -78,6 +79,7 @@ def check(
     if updates and (formats or html):
         unused = "--format" if formats else "--html"
         raise UsageError(f"{unused} does not go with --update-baseline: nothing is checked then", hint=_USES)
+    _require_names(baseline if updates else None, replaying.get("output"), html)
     wanted, limits = outputs.wanted(formats), parsed(tolerances)
     outputs.require_writable(wanted)
     if suite is not None:
@@ -101,6 +103,18 @@ def check(
             raise cases[0].error
     outputs.tell(terminal, cases, wanted)
     return exit_code_of(cases)
+
+
+def _require_names(baseline: Path | None, output: Path | None, html: Path | None) -> None:
+    """UsageError where an output has a name of something else, or is standard output, which has the verdict."""
+    if baseline is not None:
+        require_file(baseline, "a baseline", "--baseline BASELINE.yaml")
+    if output is not None:
+        require_file(output, "a result", "-o OUT.mcap")
+        required_suffix(output, RESULT, "a result")
+    if html is not None:
+        require_file(html, "the page of a check", "--html CHECK.html")
+        required_suffix(html, PAGE, "a page", "--html ")
 
 
 def _check(

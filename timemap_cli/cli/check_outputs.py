@@ -5,8 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from timemap_cli.cli.chosen import begins_with
+from timemap_cli.cli.outputs import STANDARD_OUTPUT, required_suffix
 from timemap_cli.cli.terminal import Terminal
-from timemap_cli.errors import UsageError
+from timemap_cli.errors import UsageError, refuse_pipe
+from timemap_cli.file_names import shown
 
 if TYPE_CHECKING:
     from timemap_cli.checks.verdict import CheckedCase
@@ -23,6 +25,18 @@ _HEADS = {  # each format, and how a file of it begins
 }
 
 
+_SUFFIXES = {  # each format, and what its file may be called, if the suffix says anything
+    "text": (".txt", ".log"),
+    "json": (".json",),
+    "junit": (".xml",),
+    "github": (".txt", ".log"),
+    "markdown": (".md", ".markdown", ".txt"),
+}
+_TELLING = {".html", ".htm", ".mcap", ".bag", ".yaml", ".yml", ".png", ".svg", ".pdf"}.union(
+    *_SUFFIXES.values()
+)
+
+
 def wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
     """Formats and the files they go to; None is standard output, which takes one at most."""
     found: list[Output] = []
@@ -34,10 +48,18 @@ def wanted(formats: Sequence[str]) -> list[tuple[str, Path | None]]:
             raise UsageError(
                 f"--format {word} names no file", hint=f"--format {name}, or --format {name}=FILE"
             )
-        found.append((name, Path(file) if file else None))
+        found.append((name, _file(name, file) if equals and file != STANDARD_OUTPUT else None))
     if sum(file is None for _, file in found) > 1:
         raise UsageError("standard output takes one format", hint="--format junit=junit.xml --format github")
     return found
+
+
+def _file(form: str, name: str) -> Path:
+    """The file that a format goes to; UsageError where its name says that it is another one."""
+    file = Path(name)
+    if file.suffix.lower() in _TELLING:
+        required_suffix(file, _SUFFIXES[form], f"a file of {form}", f"--format {form}=")
+    return file
 
 
 def require_writable(wanted: Sequence[Output]) -> None:
@@ -74,8 +96,11 @@ def tell(
 def _append(terminal: Terminal, summary: Path, text: str) -> None:
     """Add to the job's summary; one that cannot be written changes no verdict."""
     try:
+        refuse_pipe(summary)
         with summary.open("a", encoding="utf-8") as stream:
-            stream.write(text)
+            stream.write(shown(text))
+    except UsageError as error:
+        terminal.warn(f"cannot write the job's summary: {error.message}")
     except OSError as error:
         terminal.warn(f"cannot write the job's summary {summary}: {(error.strerror or str(error)).lower()}")
 
@@ -83,7 +108,7 @@ def _append(terminal: Terminal, summary: Path, text: str) -> None:
 def _write(path: Path, form: str, text: str) -> None:
     """Write what a check says into a file of its own, in place of what an earlier check said there."""
     with _opened(path, form) as file:
-        file.write((text.rstrip("\n") + "\n").encode())
+        file.write((shown(text).rstrip("\n") + "\n").encode())
         file.commit()
 
 

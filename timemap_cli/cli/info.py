@@ -1,6 +1,5 @@
 """`timemap info`: what is in recordings and what a replay would use."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import click
 
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
+from timemap_cli.file_names import json_text
 
 
 @click.command(short_help="what is in recordings or results, and what a replay would use")
@@ -46,7 +46,5 @@ def _about_results(results: Sequence[Path], as_json: bool) -> str:
         with ResultReader(path) as result:
             found.append(result_document(result))
     if as_json:
-        return json.dumps(
-            {"schema": "timemap.info/1", "logs": [], "results": found}, indent=2, allow_nan=False
-        )
+        return json_text({"schema": "timemap.info/1", "logs": [], "results": found}, indent=2)
     return "\n\n".join(map(result_text, found))

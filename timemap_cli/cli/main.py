@@ -9,6 +9,7 @@ import click
 from timemap_cli import __version__
 from timemap_cli.cli.changes import changes
 from timemap_cli.cli.check import check
+from timemap_cli.cli.completion import VARIABLE, completion
 from timemap_cli.cli.config import config
 from timemap_cli.cli.diff import diff
 from timemap_cli.cli.info import info
@@ -64,6 +65,9 @@ def _exit_code(args: Sequence[str], terminal: Terminal) -> int:
     told = StringIO()  # what click prints: help and version
     try:
         with redirect_stdout(told), redirect_stderr(terminal.stderr):
+            if instruction := terminal.variables.get(VARIABLE):
+                told.write(completion(timemap, instruction))
+                return ExitCode.DONE
             code = timemap.main(list(args), prog_name="timemap", standalone_mode=False, obj=terminal)
     except click.exceptions.NoArgsIsHelpError as error:
         terminal.note(error.ctx.get_help() if error.ctx else "")

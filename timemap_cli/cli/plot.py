@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from timemap_cli.cli.chosen import begins_with, chosen_result, title_of
+from timemap_cli.cli.chosen import chosen_result, title_of
 from timemap_cli.cli.level_words import LevelPairs
+from timemap_cli.cli.outputs import is_standard_output, required_suffix, write_output
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode, UsageError
@@ -14,7 +15,11 @@ from timemap_cli.errors import ExitCode, UsageError
 if TYPE_CHECKING:
     from timemap_cli.results.reader import ResultReader
 
-_PNG = b"\x89PNG\r\n\x1a\n"
+_HEADS = {  # how a picture that may be replaced begins, by its suffix
+    ".png": b"\x89PNG\r\n\x1a\n",
+    ".svg": b'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n<!DOCTYPE svg ',
+    ".pdf": b"%PDF-",
+}
 
 
 @click.command(cls=LevelPairs, short_help="a still picture: a level, what differs between two, or a node")
@@ -24,7 +29,7 @@ _PNG = b"\x89PNG\r\n\x1a\n"
     "--output",
     type=NAMED_PATH,
     metavar="PICTURE.png",
-    help="Picture. [default: RESULT's name with .png, here]",
+    help="Picture: .png, .svg or .pdf; - is standard output. [default: RESULT's name with .png, here]",
 )
 @click.option(
     "--level",
@@ -47,25 +52,29 @@ def plot(
     node: int | None,
     force: bool,
 ) -> ExitCode:
-    """Draw RESULT as a PNG.
+    """Draw RESULT as a PNG, or as what the suffix of its name says: PNG, SVG or PDF.
 
     Free space is white, unknown space grey, and a surface the darker the better supported. Without RESULT, the
     newest *.timemap.mcap in the current folder is taken. Needs matplotlib: pip install 'timemap-cli[plot]'.
     """
-    from timemap_cli.results.atomic_file import AtomicFile
     from timemap_cli.results.reader import ResultReader
 
     _check_usage(levels, node)
+    named = output is not None and not is_standard_output(output)
+    suffix = required_suffix(output, tuple(_HEADS), "a picture") if output and named else ".png"
     result = chosen_result(terminal, result)
     title = title_of(result)
     output = output or Path(title + ".png")
-    with (
-        ResultReader(result) as reader,
-        AtomicFile(output, force=force, may_replace=begins_with(_PNG), replaced="a PNG picture") as file,
-    ):
-        file.write(_level(reader, levels, title) if node is None else _node(reader, node, title))
-        file.commit()
-    terminal.result(str(output))
+    form = suffix[1:]
+    with ResultReader(result) as reader:
+        write_output(
+            terminal,
+            output,
+            lambda: _level(reader, levels, title, form) if node is None else _node(reader, node, title, form),
+            force=force,
+            heads=[_HEADS[suffix]],
+            replaced=f"a {form.upper()} picture",
+        )
     return ExitCode.DONE
 
 
@@ -80,7 +89,7 @@ def _check_usage(levels: tuple[str, ...], node: int | None) -> None:
         )
 
 
-def _level(reader: "ResultReader", levels: tuple[str, ...], title: str) -> bytes:
+def _level(reader: "ResultReader", levels: tuple[str, ...], title: str, form: str) -> bytes:
     from timemap_cli.comparing import compare_levels, require_level
     from timemap_cli.reports.pictures import level_picture
 
@@ -93,10 +102,10 @@ def _level(reader: "ResultReader", levels: tuple[str, ...], title: str) -> bytes
         comparison = compare_levels(reader.path, (levels[0], levels[1]))
         level, difference = comparison.before.level, comparison.difference
         title = f"{title}: {level}, and what differs in {comparison.after.level}"
-    return level_picture(title, reader.nodes, reader.estimates(level), reader.radius, difference)
+    return level_picture(title, reader.nodes, reader.estimates(level), reader.radius, difference, form=form)
 
 
-def _node(reader: "ResultReader", node: int, title: str) -> bytes:
+def _node(reader: "ResultReader", node: int, title: str, form: str) -> bytes:
     from timemap_cli.reports.pictures import node_picture
 
     if node >= len(reader.nodes):
@@ -105,4 +114,4 @@ def _node(reader: "ResultReader", node: int, title: str) -> bytes:
             hint=f"timemap plot {reader.path} --node {len(reader.nodes) - 1}",
         )
     held = {level: reader.estimates(level).get(node) for level in reader.levels}
-    return node_picture(f"{title}: node {node}", reader.nodes[node], held)
+    return node_picture(f"{title}: node {node}", reader.nodes[node], held, form=form)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from timemap_cli.cli.outputs import RESULT, require_file, required_suffix
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.progress import ProgressBar
 from timemap_cli.cli.terminal import Terminal
@@ -90,6 +91,7 @@ def replay(
     Exit code 3: done, but data was lost (a recording is cut off, or too many scans had to be dropped).
     """
     result = output or default_output(logs[0])
+    require_file(result, "a result", "-o OUT.mcap")
     inputs = {
         "recording": logs,
         "settings file": [config_file],
@@ -97,6 +99,7 @@ def replay(
         "earlier result": [resume],
     }
     _refuse_own_input(result, inputs)
+    required_suffix(result, RESULT, "a result")
     settings = load(config_file, _overrides(**flags), _earlier_settings(resume, nodes))
 
     from timemap_cli import replay as replaying
@@ -160,9 +163,7 @@ def _overrides(
 
 
 def _refuse_own_input(output: Path, inputs: Mapping[str, Sequence[Path | None]]) -> None:
-    """UsageError if the result would replace something that is read, lie within it, or have no name."""
-    if str(output) == "-":
-        raise UsageError("a result is a file: it does not go to standard output", hint="-o OUT.mcap")
+    """UsageError if the result would replace something that is read, or lie within it."""
     target = output.resolve()
     for what, paths in inputs.items():
         for path in paths:

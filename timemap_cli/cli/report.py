@@ -4,7 +4,8 @@ from pathlib import Path
 
 import click
 
-from timemap_cli.cli.chosen import HTML, begins_with, chosen_result, title_of
+from timemap_cli.cli.chosen import HTML, chosen_result, title_of
+from timemap_cli.cli.outputs import PAGE, is_standard_output, required_suffix, write_output
 from timemap_cli.cli.paths import NAMED_PATH
 from timemap_cli.cli.terminal import Terminal
 from timemap_cli.errors import ExitCode
@@ -17,7 +18,7 @@ from timemap_cli.errors import ExitCode
     "--output",
     type=NAMED_PATH,
     metavar="PAGE.html",
-    help="Page. [default: RESULT's name with .html, here]",
+    help="Page; - is standard output. [default: RESULT's name with .html, here]",
 )
 @click.option("--force", is_flag=True, help="Replace an existing page.")
 @click.pass_obj
@@ -29,17 +30,20 @@ def report(terminal: Terminal, /, result: Path | None, output: Path | None, forc
     """
     from timemap_cli.reports.page import page
     from timemap_cli.reports.page_data import page_data
-    from timemap_cli.results.atomic_file import AtomicFile
     from timemap_cli.results.reader import ResultReader
 
+    if output is not None and not is_standard_output(output):
+        required_suffix(output, PAGE, "a page")
     result = chosen_result(terminal, result)
     title = title_of(result)
     output = output or Path(title + ".html")
-    with (
-        ResultReader(result) as reader,
-        AtomicFile(output, force=force, may_replace=begins_with(HTML), replaced="a page") as file,
-    ):
-        file.write(page(title, page_data(reader)).encode())
-        file.commit()
-    terminal.result(str(output))
+    with ResultReader(result) as reader:
+        write_output(
+            terminal,
+            output,
+            lambda: page(title, page_data(reader)).encode(),
+            force=force,
+            heads=[HTML],
+            replaced="a page",
+        )
     return ExitCode.DONE

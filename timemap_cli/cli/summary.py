@@ -1,7 +1,8 @@
 """What a replay did, for people and for programs."""
 
-import json
 from typing import TYPE_CHECKING
+
+from timemap_cli.file_names import json_text
 
 if TYPE_CHECKING:
     from timemap_cli.replay import ReplaySummary
@@ -38,4 +39,4 @@ def replay_json(summary: "ReplaySummary") -> str:
         "seconds": round(summary.seconds, 3),
         "warnings": list(summary.warnings),
     }
-    return json.dumps(report, indent=2, allow_nan=False)
+    return json_text(report, indent=2)

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TextIO
 
-from timemap_cli.errors import TimemapError
+from timemap_cli.errors import TimemapError, UsageError
+from timemap_cli.file_names import shown
 
 # C0 and C1 controls, and what turns the direction of writing (Unicode's Bidi_Control).
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
@@ -28,8 +29,23 @@ class Terminal:
 
         Raises TimemapError where it cannot be written, on a full disk say.
         """
+        self._written(lambda: self.stdout.write(_harmless(text if text.endswith("\n") else f"{text}\n")))
+
+    def data(self, content: bytes) -> None:
+        """Write the bytes of a file as they are, where a program reads them.
+
+        Raises UsageError where that is a terminal, TimemapError where they cannot be written.
+        """
+        if self.stdout.isatty():
+            raise UsageError(
+                "standard output is a terminal, and what comes is not for people to read",
+                hint="-o FILE, or a program that reads it: | ...",
+            )
+        self._written(lambda: self.stdout.buffer.write(content))
+
+    def _written(self, write: Callable[[], int]) -> None:
         try:
-            self.stdout.write(_harmless(text if text.endswith("\n") else f"{text}\n"))
+            write()
             self.stdout.flush()
         except BrokenPipeError:
             _drop(self.stdout)
@@ -78,7 +94,7 @@ def _harmless(text: str) -> str:
 
     A terminal would take them for orders: colours, titles, what stood there before.
     """
-    return _CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    return _CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), shown(text))
 
 
 def _one_line(text: str) -> str:

@@ -20,6 +20,7 @@ from timemap_cli.logs import bag_records as records
 from timemap_cli.logs.bag_records import DamagedBagError
 from timemap_cli.logs.chunked import ChunkSpan, in_log_order, stretches, with_shortfall, within
 from timemap_cli.logs.raw import Connection, RawMessages
+from timemap_cli.logs.shared_handles import HANDLES
 
 MAGIC = b"#ROSBAG V2.0\n"
 
@@ -39,7 +40,7 @@ class BagFile:
 
     def __init__(self, path: Path) -> None:
         """Open it and read its index; without one, scan it. Raises OSError or DamagedBagError."""
-        self._file: IO[bytes] = path.open("rb")
+        self._file: IO[bytes] = HANDLES.open(path)
         self._size = self._file.seek(0, 2)
         self._newest: tuple[int, records.Record, bytes] | None = (
             None  # place and content of the chunk read last

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,9 +33,9 @@ def drives(
     found: list[list[int]] = []
     for group in joined(recordings, WINDOW_NS):
         apart: list[list[int]] = []
-        edges = {index: _moving(transforms[index]) for index in group} if len(group) > 1 else {}
+        moving = {index: _Moving.of(transforms[index]) for index in group} if len(group) > 1 else {}
         for index in group:
-            fitting = (d for d in apart if not any(_contradict(edges[index], edges[other]) for other in d))
+            fitting = (d for d in apart if not any(_contradict(moving[index], moving[other]) for other in d))
             drive = next(fitting, None)
             if drive is None:
                 apart.append([index])
@@ -44,13 +45,24 @@ def drives(
     return tuple(map(tuple, found))
 
 
-def _moving(batches: Sequence[TransformBatch]) -> dict[Edge, TransformBatch]:
-    """The moving edges, each with all its samples that are poses."""
-    parts: dict[Edge, list[TransformBatch]] = {}
-    for batch in batches:
-        if not batch.static:
-            parts.setdefault((batch.parent, batch.child), []).append(batch)
-    return {edge: whole for edge, some in parts.items() if len((whole := _usable(some)).stamps_ns)}
+@dataclass(frozen=True, slots=True)
+class _Moving:
+    """The moving edges of a recording, each with all its samples that are poses, and the span of their stamps."""
+
+    edges: Mapping[Edge, TransformBatch]
+    first_ns: int
+    last_ns: int
+
+    @classmethod
+    def of(cls, batches: Sequence[TransformBatch]) -> _Moving:
+        parts: dict[Edge, list[TransformBatch]] = {}
+        for batch in batches:
+            if not batch.static:
+                parts.setdefault((batch.parent, batch.child), []).append(batch)
+        edges = {edge: whole for edge, some in parts.items() if len((whole := _usable(some)).stamps_ns)}
+        first_ns = min((int(edge.stamps_ns.min()) for edge in edges.values()), default=0)
+        last_ns = max((int(edge.stamps_ns.max()) for edge in edges.values()), default=0)
+        return cls(edges, first_ns, last_ns)
 
 
 def _usable(parts: Sequence[TransformBatch]) -> TransformBatch:
@@ -63,9 +75,13 @@ def _usable(parts: Sequence[TransformBatch]) -> TransformBatch:
     )
 
 
-def _contradict(some: Mapping[Edge, TransformBatch], others: Mapping[Edge, TransformBatch]) -> bool:
+def _contradict(some: _Moving, others: _Moving) -> bool:
     """Whether an edge that both have is in other places at the stamps that both cover."""
-    return any(_differ(batch, others[edge]) for edge, batch in some.items() if edge in others)
+    if some.first_ns > others.last_ns or others.first_ns > some.last_ns:  # as most parts of a drive
+        return False
+    return any(
+        _differ(batch, others.edges[edge]) for edge, batch in some.edges.items() if edge in others.edges
+    )
 
 
 def _differ(one: TransformBatch, other: TransformBatch) -> bool:

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 import zstandard
 
-from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.errors import TimemapError, UsageError, no_such_file, refuse_pipe
 from timemap_cli.logs.announced_counts import announced_counts
 from timemap_cli.logs.bag_file import BagFile
 from timemap_cli.logs.bounds import MOST_CHUNK_BYTES
@@ -51,6 +51,7 @@ def open_files(path: Path, stack: ExitStack) -> OpenFiles:
 
     ``stack`` closes them. Raises UsageError where there is no recording, and what the readers raise.
     """
+    refuse_pipe(path)
     if path.is_dir():
         listed = _files_of_folder(path)
     elif path.exists():
@@ -173,6 +174,7 @@ class _Listed:
 
 def _files_of_folder(folder: Path) -> _Listed:
     """The storage files of a bag folder, those its metadata names or all where it has none."""
+    refuse_pipe(folder / METADATA)
     try:
         names = listed_names(folder / METADATA)
     except FileNotFoundError:

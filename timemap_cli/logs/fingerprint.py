@@ -12,7 +12,7 @@ def sha256(path: Path) -> str:
         if path.is_dir():
             files = sorted(file for file in path.iterdir() if file.is_file())
             lines = "".join(f"{sha256(file)}  {file.name}\n" for file in files)
-            return hashlib.sha256(lines.encode()).hexdigest()
+            return hashlib.sha256(lines.encode(errors="surrogateescape")).hexdigest()
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:

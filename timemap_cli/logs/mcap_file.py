@@ -21,6 +21,7 @@ from timemap_cli.logs.mcap_chunks import DamagedChunkError, chunk_content, from_
 from timemap_cli.logs.mcap_contents import McapSpan, from_summary, read_profile
 from timemap_cli.logs.mcap_scan import scan
 from timemap_cli.logs.raw import Connection, RawMessages, ros2_name
+from timemap_cli.logs.shared_handles import HANDLES
 
 DEFINITION_FORMATS = {"ros2msg": "msg", "ros1msg": "msg", "ros2idl": "idl", "omgidl": "idl"}
 
@@ -33,7 +34,7 @@ class McapFile:
 
         Raises OSError, and McapError or ValueError where the file is not an MCAP at all.
         """
-        self._file: IO[bytes] = path.open("rb")
+        self._file: IO[bytes] = HANDLES.open(path)
         try:
             profile = read_profile(self._file)
             contents = from_summary(self._file) or scan(self._file)

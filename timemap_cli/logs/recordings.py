@@ -133,10 +133,13 @@ def open_recordings(paths: Sequence[Path]) -> list[Recording]:
     Raises what ``Recording`` raises, and UsageError where one is given twice; then none is left open.
     """
     recordings: list[Recording] = []
+    places: set[Path] = set()
     try:
         for path in paths:
-            if any(path.resolve() == other.path.resolve() for other in recordings):
+            place = path.resolve()
+            if place in places:
                 raise UsageError(f"{path} is given twice", hint="name each recording once")
+            places.add(place)
             recordings.append(Recording(path))
     except BaseException:
         for recording in recordings:

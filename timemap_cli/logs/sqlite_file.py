@@ -6,8 +6,10 @@ its whole pages hold is read without it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
+from urllib.parse import quote
 
 import apsw
 from rosbags.interfaces import Connection as RosbagsConnection
@@ -40,7 +42,7 @@ class SqliteFile:
         self._rescue: Rescue | None = None
         self.remarks: list[str] = []
         self.problems: list[str] = []
-        reader = Sqlite3Reader(path)
+        reader = Sqlite3Reader(Path(_in_uri(path)))  # it puts the path into a URI as it is
         try:
             reader.open()
             self._read_head(reader)
@@ -123,7 +125,7 @@ class SqliteFile:
     def _queried(self, wanted: Collection[int], start_ns: int, end_ns: int) -> Iterator[Message]:
         places = ",".join("?" for _ in wanted)
         database = apsw.Connection(
-            f"file:{self._path}?immutable=1", flags=apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
+            f"file:{_in_uri(self._path)}?immutable=1", flags=apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
         )
         try:
             for key, topic, log_ns, raw in database.execute(
@@ -136,6 +138,11 @@ class SqliteFile:
                 yield key, topic, log_ns, raw
         finally:
             database.close()
+
+
+def _in_uri(path: Path) -> str:
+    """A path as part of a URI, in which `?`, `#` and `%` mean something else, and bytes that are no UTF-8 nothing."""
+    return quote(os.fsencode(path))
 
 
 def _connection(connection: RosbagsConnection) -> Connection:

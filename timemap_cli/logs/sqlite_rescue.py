@@ -11,6 +11,7 @@ from typing import IO
 import numpy as np
 
 from timemap_cli.logs.raw import Connection, Int64s, ros2_name
+from timemap_cli.logs.shared_handles import HANDLES
 from timemap_cli.logs.sqlite_pages import Pages, Row
 
 TYPE_NAME = re.compile(rb"\w+/(\w+/)?\w+")
@@ -24,7 +25,7 @@ class Rescue:
 
     def __init__(self, path: Path) -> None:
         """Look through all pages of the file. Raises OSError, or ValueError where there is no topic in them."""
-        self._file: IO[bytes] = path.open("rb")
+        self._file: IO[bytes] = HANDLES.open(path)
         try:
             self._pages = Pages(self._file)
             self._messages, self.connections = _found(self._pages)

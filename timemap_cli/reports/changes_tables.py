@@ -2,9 +2,9 @@
 
 import csv
 import io
-import json
 from collections.abc import Sequence
 
+from timemap_cli.file_names import json_text
 from timemap_cli.reports.event_selection import Event
 from timemap_cli.times import format_time
 
@@ -44,7 +44,7 @@ def changes_geojson(events: Sequence[Event]) -> str:
         }
         for event in events
     ]
-    return json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False)
+    return json_text({"type": "FeatureCollection", "features": features})
 
 
 def _time(stamp_ns: str | None) -> str:

@@ -1,10 +1,10 @@
 """A check as JSON, schema timemap.check/1."""
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
 from timemap_cli.checks.verdict import CheckedCase, Measure, exit_code_of
+from timemap_cli.file_names import json_text
 from timemap_cli.reports.check_values import outcome
 
 SCHEMA = "timemap.check/1"
@@ -20,7 +20,7 @@ def check_json(cases: Sequence[CheckedCase]) -> str:
         "checks": [_case(case) for case in cases],
         "summary": {word: words.count(word) for word in ("passed", "failed", "error")},
     }
-    return json.dumps(document, indent=2, allow_nan=False)
+    return json_text(document, indent=2)
 
 
 def _case(case: CheckedCase) -> dict[str, Any]:

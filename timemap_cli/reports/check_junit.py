@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
 from timemap_cli.checks.verdict import CheckedCase, Measure, Verdict
+from timemap_cli.file_names import shown
 from timemap_cli.reports.check_values import compared, title
 
 _FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # in XML 1.0
@@ -89,4 +90,4 @@ def _sums(suites: Sequence[ET.Element]) -> dict[str, str]:
 
 def _text(text: str) -> str:
     """Without the characters that XML does not allow, control characters in a file's name for instance."""
-    return _FORBIDDEN.sub("?", text)
+    return _FORBIDDEN.sub("?", shown(text))

@@ -1,10 +1,10 @@
 """A comparison as JSON for programs, schema timemap.diff/1."""
 
-import json
 from collections.abc import Sequence
 from math import isfinite
 
 from timemap_cli.changes.difference import Change, ComparedNode, Difference, Kind, Sector
+from timemap_cli.file_names import json_text
 from timemap_cli.model.nodes import Node
 from timemap_cli.reports.sides import ComparedSide
 
@@ -25,7 +25,7 @@ def diff_json(
     stop is not beyond the start. A range is a number or "clear". `without_partner` counts the nodes of "from" and
     of "to" that the other result does not have; None where both sides are of one result.
     """
-    return json.dumps(diff_document(difference, nodes, old, new, without_partner), allow_nan=False)
+    return json_text(diff_document(difference, nodes, old, new, without_partner))
 
 
 def diff_document(

@@ -1,9 +1,9 @@
 """What is in recordings, as JSON for programs, schema timemap.info/1."""
 
-import json
 from dataclasses import asdict
 from math import degrees, isfinite
 
+from timemap_cli.file_names import json_text
 from timemap_cli.logs.inspect import Inspection, LogInfo, PoseInfo
 from timemap_cli.logs.missing_returns import MissingReturns
 from timemap_cli.logs.pose_quality import PoseReport
@@ -15,7 +15,7 @@ def info_json(inspection: Inspection) -> str:
 
     Times are strings of nanoseconds, lengths metres; null stands for what is not known.
     """
-    return json.dumps(info_document(inspection), indent=2, allow_nan=False)
+    return json_text(info_document(inspection), indent=2)
 
 
 def info_document(inspection: Inspection) -> dict[str, object]:

@@ -1,13 +1,13 @@
 """A result as one page that needs no network: map, events, time line, memory, settings."""
 
 import html
-import json
 from collections.abc import Mapping
 from importlib.resources import files
 from string import Template
 from typing import Any
 
 from timemap_cli.errors import UsageError
+from timemap_cli.file_names import json_text, shown
 
 
 def page(title: str, data: Mapping[str, Any]) -> str:
@@ -17,7 +17,7 @@ def page(title: str, data: Mapping[str, Any]) -> str:
         name: (folder / name).read_text(encoding="utf-8") for name in ("page.html", "page.css", "page.js")
     }
     return Template(parts["page.html"]).substitute(
-        title=html.escape(title),
+        title=html.escape(shown(title)),
         style=parts["page.css"],
         plotly=_plotly(),
         data=_embedded(data),
@@ -39,4 +39,4 @@ def _plotly() -> str:
 
 def _embedded(data: Mapping[str, Any]) -> str:
     """JSON that may stand within a script element: nothing in it can end the element."""
-    return json.dumps(data, allow_nan=False).replace("<", "\\u003c")
+    return json_text(data).replace("<", "\\u003c")

@@ -1,4 +1,4 @@
-"""Still pictures, as PNG: a level seen from above, what differs between two, one node's full circle."""
+"""Still pictures, as PNG, SVG or PDF: a level seen from above, what differs between two, one node's full circle."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from timemap_cli.changes.difference import Difference, Kind
 from timemap_cli.errors import UsageError
+from timemap_cli.file_names import shown
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.level_map import UNKNOWN, OccupancyGrid, merged_points, occupancy_grid
 from timemap_cli.model.nodes import Node
@@ -27,6 +28,8 @@ _LONG_SIDE_IN = 11.0
 _SHORT_SIDE_IN = 3.5  # a corridor's picture still has room for its words
 _DPI = 80
 _FRAME_M = 0.5  # round what is farthest from a node
+# What a file would say of itself, by format.
+_TOLD = {"png": ("Software",), "svg": ("Date", "Creator"), "pdf": ("CreationDate", "Creator", "Producer")}
 _MARGIN_M = 0.1  # between a change and the box round it
 
 
@@ -37,11 +40,13 @@ def level_picture(
     estimates: Mapping[int, Estimate],
     radius: float,
     difference: Difference | None = None,
+    *,
+    form: str = "png",
 ) -> bytes:
     """A level: free space white, unknown grey, surfaces the darker the better supported, nodes as dots.
 
-    `radius` [m] is how far a node looks. The changes of `difference` are drawn on top, by kind. UsageError where
-    matplotlib is not installed.
+    `radius` [m] is how far a node looks. The changes of `difference` are drawn on top, by kind. `form` is
+    "png", "svg" or "pdf". UsageError where matplotlib is not installed.
     """
     grid = occupancy_grid(nodes, estimates, radius)
     figure, axes = _figure(title, *reversed([side * grid.resolution for side in grid.cells.shape]))
@@ -51,11 +56,13 @@ def level_picture(
     axes.plot([node.x for node in nodes], [node.y for node in nodes], ".", color=_NODE_COLOUR, ms=3)
     if difference:
         _draw_changes(axes, difference)
-    return _png(figure)
+    return _drawn(figure, form)
 
 
 @quiet_matplotlib()
-def node_picture(title: str, node: Node, levels: Mapping[str, Estimate | None]) -> bytes:
+def node_picture(
+    title: str, node: Node, levels: Mapping[str, Estimate | None], *, form: str = "png"
+) -> bytes:
     """What each level holds around one node, laid over each other; None: a level that never held anything there.
 
     `levels` has the fastest first; axes in metres from the node, along the map's. UsageError where matplotlib is
@@ -72,7 +79,7 @@ def node_picture(title: str, node: Node, levels: Mapping[str, Estimate | None]) 
         axes.plot(x, y, "o", color=colour, ms=2 + 3 * min(place, 2), mew=0, label=level)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.legend(loc="upper right")
-    return _png(figure)
+    return _drawn(figure, form)
 
 
 def _figure(title: str, width: float, height: float) -> "tuple[Figure, Axes]":
@@ -88,7 +95,8 @@ def _figure(title: str, width: float, height: float) -> "tuple[Figure, Axes]":
         figsize=(max(width * scale, _SHORT_SIDE_IN), max(height * scale, _SHORT_SIDE_IN)), layout="tight"
     )
     axes = figure.add_subplot()
-    axes.set(title=title, xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.set_title(shown(title), parse_math=False)  # a file's name may hold any letters: $_$ is no formula
+    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     return figure, axes
 
 
@@ -119,7 +127,11 @@ def _draw_changes(axes: "Axes", difference: Difference) -> None:
         axes.legend(loc="upper right")
 
 
-def _png(figure: "Figure") -> bytes:
+def _drawn(figure: "Figure", form: str) -> bytes:
+    """The picture's file; the same picture gives the same bytes, which say neither when nor by what."""
+    from matplotlib import rc_context
+
     out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=_DPI, metadata={"Software": None})
+    with rc_context({"svg.hashsalt": "timemap"}):
+        figure.savefig(out, format=form, dpi=_DPI, metadata=dict.fromkeys(_TOLD[form]))
     return out.getvalue()

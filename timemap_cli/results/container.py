@@ -17,7 +17,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader, get_chunk_data_
 from mcap.summary import Summary
 from zstandard import ZstdError, frame_content_size
 
-from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.errors import TimemapError, UsageError, no_such_file, refuse_pipe
 from timemap_cli.results import channels
 
 _MOST_BYTES = (
@@ -229,6 +229,7 @@ def _messages(chunk: bytes, wanted: Mapping[int, str], end_ns: int) -> Iterator[
 
 
 def _open(path: Path) -> BinaryIO:
+    refuse_pipe(path)
     if path.is_dir():
         raise _not_a_result(path, recording=(path / "metadata.yaml").exists())
     try:

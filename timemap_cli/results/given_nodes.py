@@ -3,7 +3,7 @@
 import math
 from pathlib import Path
 
-from timemap_cli.errors import TimemapError, UsageError, no_such_file
+from timemap_cli.errors import TimemapError, UsageError, no_such_file, refuse_pipe
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.placement import MOST_NODES
 from timemap_cli.results.reader import ResultReader
@@ -25,6 +25,7 @@ def read_nodes(path: Path, map_frame: str) -> tuple[Node, ...]:
 
 
 def _read(path: Path, map_frame: str) -> tuple[Node, ...]:
+    refuse_pipe(path)
     try:
         data = path.read_bytes() if path.is_file() else None
     except OSError as error:

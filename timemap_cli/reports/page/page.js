@@ -187,12 +187,12 @@ function drawLine() {
       customdata.push({ event: event.id }, { event: event.id }, null);
     }));
     return { type: "scatter", mode: "lines+markers", name: kind, x, y, customdata, line: { color: colour, width: 7 },
-      marker: { size: 7, color: colour }, hoverinfo: "skip" };
+      marker: { size: 7, color: colour }, hoverinfo: "none" };  // "skip" would pass over clicks, too
   });
   const now = DATA.times.length ? milliseconds(DATA.times[state.step]) : 0;
   Plotly.react("line", traces, {
     height: Math.min(420, 110 + 22 * EVENTS.length), margin: { l: 44, r: 24, t: 30, b: 40 }, showlegend: false,
-    hovermode: "closest", uirevision: "keep", xaxis: timeAxis(),
+    hovermode: "y", uirevision: "keep", xaxis: timeAxis(),  // a click counts anywhere in a row
     yaxis: { ...rowTicks(), title: { text: "id" },
       range: [EVENTS.length - 0.4, -0.6], ...AXES },
     shapes: [{ type: "line", x0: now, x1: now, y0: 0, y1: 1, yref: "paper", line: { color: "#888", width: 1, dash: "dot" } }],
@@ -350,9 +350,15 @@ function fillFailure(cells, spot) {
 
 function draw() { drawPlan(); drawLine(); drawNode(); markRows(); }
 
+// Of the points that a click met, the one whose place is nearest to it from top to bottom.
+function nearestRow(points, y) {
+  const apart = (one) => Math.abs(one.yaxis._offset + one.yaxis.d2p(one.y) - y);
+  return points.reduce((best, one) => (apart(one) < apart(best) ? one : best));
+}
+
 function clicked(target) {
   byId(target).on("plotly_click", (found) => {
-    const data = found.points[0].customdata;
+    const data = nearestRow(found.points, found.event.clientY - byId(target).getBoundingClientRect().top).customdata;
     if (data && data.event !== undefined) choose(data.event);
     if (data && data.node !== undefined) { state.node = data.node; draw(); }
   });
