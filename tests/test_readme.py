@@ -18,26 +18,32 @@ def lines_that_stay(output):
     return [line.rstrip() for line in output.splitlines() if not re.match(r"  time +[0-9.]+ s", line)]
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A folder with the sample recordings in it, for all commands one after another."""
-    folder = tmp_path_factory.mktemp("tour")
-    (folder / "sample_logs").symlink_to(ROOT / "sample_logs")
-    return folder
+BLOCKS = BLOCK.findall(README)
 
 
-@pytest.mark.parametrize("block", BLOCK.findall(README), ids=lambda block: block.split("\n")[0][2:40])
-def test_a_command_of_the_tour_prints_what_the_readme_says(folder, block):
-    command, expected = block.split("\n", 1)
-    program, *arguments = shlex.split(command.removeprefix("$ "))
+def run(folder, block):
+    program, *arguments = shlex.split(block.split("\n", 1)[0].removeprefix("$ "))
     assert program == "timemap"
-    done = subprocess.run(
+    return subprocess.run(
         [sys.executable, "-m", "timemap_cli", *arguments],
         cwd=folder,
         capture_output=True,
         text=True,
         check=False,
     )
+
+
+@pytest.fixture(scope="module")
+def tour(tmp_path_factory):
+    """All commands one after another, as in the README, in a folder with the sample recordings in it."""
+    folder = tmp_path_factory.mktemp("tour")
+    (folder / "sample_logs").symlink_to(ROOT / "sample_logs")
+    return [run(folder, block) for block in BLOCKS]
+
+
+@pytest.mark.parametrize("place", range(len(BLOCKS)), ids=lambda place: BLOCKS[place].split("\n")[0][2:40])
+def test_a_command_of_the_tour_prints_what_the_readme_says(tour, place):
+    done, expected = tour[place], BLOCKS[place].split("\n", 1)[1]
     assert done.returncode == 0, done.stderr
     assert lines_that_stay(done.stdout) == lines_that_stay(expected)
 
