@@ -50,6 +50,7 @@ class Change:
     support: float  # 0..1, mean over the changed bins of the weaker of both sides' share of what is known
     sectors: tuple[Sector, ...]  # by node, then start_bin; of a moved thing both places
     points: Floats = field(compare=False, repr=False)  # (n, 2) [m] the surface where it stands, or stood
+    alone: bool = False  # it was seen whole, with something farther on either side
     moved_from: tuple[float, float] | None = None  # [m] where a moved thing stood
     points_before: Floats | None = field(
         default=None, compare=False, repr=False

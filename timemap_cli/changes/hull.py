@@ -4,12 +4,12 @@ import numpy as np
 
 from timemap_cli.changes.rings import Floats
 
-_MARGIN_M = 0.025  # a surface seen from one side is a line; its outline has a width all the same
+MARGIN_M = 0.025  # a surface seen from one side is a line; its outline has a width all the same
 
 
 def hull(points: Floats) -> Floats:
     """Corners (k, 2) [m], counter-clockwise, of the least convex polygon round squares of 5 cm at the points (n, 2)."""
-    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * _MARGIN_M
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * MARGIN_M
     around = (points[:, None] + corners).reshape(-1, 2)
     ordered = np.unique(around, axis=0).tolist()  # by x, then y
     lower, upper = _chain(ordered), _chain(ordered[::-1])

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from timemap_cli.changes.looks import looks
+from timemap_cli.changes.moves import stands_alone
 from timemap_cli.changes.nearby import near
 from timemap_cli.changes.rings import Bools, Floats, Ints
 from timemap_cli.changes.rules import Rules
@@ -70,15 +71,31 @@ class _Judge:
         runs = find_runs(contested, self.having.rings.ranges, self.having.places, self.rules)
         found = []
         for thing in link(runs, self.rules.link_m):
-            if self._is_lost(np.concatenate([number[run.row, run.bins] for run in thing.runs])):
+            which = np.concatenate([number[run.row, run.bins] for run in thing.runs])
+            if self._is_lost(which) and self._is_witnessed(thing):
                 passed = _runs_past(thing.points, self.lacking, self.rules)
-                found += [replace(thing, passed=tuple(passed))] if passed else []
+                alone = stands_alone(thing.runs, self.having, self.rules)
+                found += [replace(thing, passed=tuple(passed), alone=alone)] if passed else []
         return found
 
     def _is_lost(self, points: Ints) -> bool:
         agreement = self.rules.agreement
         gone, stood = self.heard.is_gone(points, agreement), self.own.stands(points, agreement)
         return gone and stood and len(points) >= self.rules.min_thing_bins
+
+    def _is_witnessed(self, thing: Thing) -> bool:
+        """Whether more than one node shows it, or one that the other side confirms all around.
+
+        A node that was made while the robot did not know where it was shows walls beside the walls.
+        """
+        first = thing.runs[0].row
+        if any(run.row != first for run in thing.runs):
+            return True
+        bins = np.flatnonzero(self.having.shows_surface[first])
+        ends = self.having.ends(np.full(len(bins), first), bins)
+        heard = testimony(ends, self.lacking, self.rules)
+        confirmed = int(np.count_nonzero(heard.shown > heard.past)) * self.having.places.bin_rad
+        return confirmed >= np.radians(self.rules.lone_confirmed_deg)
 
 
 def _runs_past(points: Floats, side: Side, rules: Rules) -> Sequence[Run]:

@@ -33,9 +33,16 @@ class Rules:
         0.25  # share of the looks from which a point may have changed: nodes turn one by one
     )
     agreement: float = 0.5  # share of all looks at a thing that must say so
+    lone_confirmed_deg: float = (
+        120.0  # of its circle; a node that alone shows a thing must be right about the rest
+    )
     max_age_ns: int = 3_600_000_000_000  # an angle bin not seen for an hour has no word on what is watched
-    move_max_m: float = 1.0  # beyond a metre another thing of that shape is as likely
-    move_shape_m: float = 0.1  # outlines farther apart than bin spacing and noise explain are two shapes
+    move_max_m: float = 1.0  # beyond a metre another thing of which one face shows the same is as likely
+    move_two_sides_m: float = 0.2  # shorter side of what was seen from two sides
+    move_shape_m: float = (
+        0.12  # sides that differ by more than bin spacing and noise explain are of two shapes ...
+    )
+    move_shape_share: float = 0.1  # ... and of long ones, by more than this share
 
     @classmethod
     def of_level(cls, is_fastest: bool) -> "Rules":

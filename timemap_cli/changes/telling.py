@@ -36,6 +36,7 @@ class Teller:
             min(_support(thing.runs, having), _support(thing.passed, lacking)),
             tuple(sorted(sectors, key=lambda sector: (sector.node, sector.start_bin))),
             thing.points,
+            thing.alone,
         )
 
     def moved(self, gone: Thing, come: Thing) -> Change:

@@ -16,6 +16,7 @@ class Thing:
 
     runs: tuple[Run, ...]
     points: Floats  # (n, 2) [m] map frame, of all runs
+    alone: bool = False  # it was seen whole, with something farther on either side
     passed: tuple[Run, ...] = ()  # of the other side's nodes, where they see past it, along its surface
 
 

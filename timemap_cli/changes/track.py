@@ -31,6 +31,7 @@ class Track:
     moved_from: tuple[float, float] | None
     points_before: Floats | None
     adopted: dict[str, int | None]
+    alone: bool = False  # it was seen whole, with something farther on either side
     id: int | None = None  # given when it is reported
     by_slower: bool = False  # a slower level has told the outline
     words: dict[int, int] = field(default_factory=dict)  # newest word of each node, at the fastest level
@@ -54,6 +55,7 @@ class Track:
             change.moved_from,
             change.points_before,
             dict.fromkeys(levels),
+            change.alone,
         )
 
     def kept(self) -> State:
@@ -98,6 +100,16 @@ class Track:
         """Whether it may be forgotten: nothing but a passer-by."""
         return self.id is None and not self.is_open and not self.lasting
 
+    @property
+    def since_ns(self) -> int:
+        """Since when the newest episode holds; there is at least one."""
+        return self.episodes[-1].since_ns
+
+    def has_moved_from(self, points: Floats) -> None:
+        """Take note that what appeared is what left an outline (n, 2) [m, map frame] elsewhere."""
+        x, y = points.mean(axis=0).tolist()
+        self.kind, self.moved_from, self.points_before = Kind.MOVED, (x, y), points
+
     def takes(self, kind: Kind) -> bool:
         """Whether a candidate of a kind at this place is this change seen again."""
         if kind is Kind.VANISHED or self.kind is Kind.VANISHED:
@@ -118,6 +130,7 @@ class Track:
             self.points = _thinned(points)
             self.support = change.support
         self.by_slower |= slower
+        self.alone |= change.alone
         if change.kind is Kind.MOVED:
             self.kind, self.moved_from, self.points_before = (
                 change.kind,

@@ -15,6 +15,7 @@ from timemap_cli.changes.compare import news
 from timemap_cli.changes.difference import Change, Kind
 from timemap_cli.changes.events import Event, Transition, Turn
 from timemap_cli.changes.matching import best_match, overlap
+from timemap_cli.changes.moves import pair_moves
 from timemap_cli.changes.rules import Rules
 from timemap_cli.changes.sides import Side
 from timemap_cli.changes.track import Track
@@ -81,7 +82,7 @@ class Tracker:
         for track in self._tracks:
             found += track.look(view, self._rules)
         self._tracks = [track for track in self._tracks if not track.is_over]
-        return found + self._report()
+        return found + self._join_moved() + self._report()
 
     def _candidates(self, nodes: Sequence[Node], view: View) -> Iterator[tuple[str, Change]]:
         """Changes from what the slowest level held before this round to each level now, slower levels first."""
@@ -115,6 +116,21 @@ class Tracker:
                 dropped += self._drop(other)
         elif not self._is_told(change):
             self._tracks.append(Track.of(change, self.levels))
+        return dropped
+
+    def _join_moved(self) -> list[Transition]:
+        """Make one of what vanished here and appeared there, in another room perhaps, on the same round."""
+        sure = [
+            track for track in self._tracks if track.is_open and track.is_sure and track.moved_from is None
+        ]
+        newest_ns = max((track.since_ns for track in sure), default=0)
+        lately = [track for track in sure if track.since_ns >= newest_ns - self._rules.max_age_ns]
+        gone = [track for track in lately if track.kind is Kind.VANISHED]
+        come = [track for track in lately if track.kind is Kind.APPEARED]
+        dropped: list[Transition] = []
+        for left, entered in pair_moves(gone, come, self._rules) if gone and come else ():
+            come[entered].has_moved_from(gone[left].points)
+            dropped += self._drop(gone[left])
         return dropped
 
     def _is_told(self, change: Change) -> bool:
