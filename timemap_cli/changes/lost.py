@@ -69,14 +69,14 @@ class _Judge:
         contested[self.rows, self.bins] = True
         number[self.rows, self.bins] = np.arange(len(self.rows))
         runs = find_runs(contested, self.having.rings.ranges, self.having.places, self.rules)
-        found = []
+        found: list[Thing] = []
         for thing in link(runs, self.rules.link_m):
             which = np.concatenate([number[run.row, run.bins] for run in thing.runs])
-            if self._is_lost(which) and self._is_witnessed(thing):
+            if self._is_lost(which):
                 passed = _runs_past(thing.points, self.lacking, self.rules)
                 alone = stands_alone(thing.runs, self.having, self.rules)
-                found += [replace(thing, passed=tuple(passed), alone=alone)] if passed else []
-        return found
+                found.append(replace(thing, passed=tuple(passed), alone=alone))
+        return [thing for thing in found if thing.passed and self._is_witnessed(thing)]
 
     def _is_lost(self, points: Ints) -> bool:
         agreement = self.rules.agreement
@@ -84,18 +84,20 @@ class _Judge:
         return gone and stood and len(points) >= self.rules.min_thing_bins
 
     def _is_witnessed(self, thing: Thing) -> bool:
-        """Whether more than one node shows it, or one that the other side confirms all around.
+        """Whether more than one node shows it, or one that sees past it itself or is right about the rest around it.
 
         A node that was made while the robot did not know where it was shows walls beside the walls.
         """
-        first = thing.runs[0].row
+        first, having, lacking = thing.runs[0].row, self.having.places, self.lacking.places
         if any(run.row != first for run in thing.runs):
+            return True
+        if any(lacking.numbers[run.row] == having.numbers[first] for run in thing.passed):
             return True
         bins = np.flatnonzero(self.having.shows_surface[first])
         ends = self.having.ends(np.full(len(bins), first), bins)
         heard = testimony(ends, self.lacking, self.rules)
-        confirmed = int(np.count_nonzero(heard.shown > heard.past)) * self.having.places.bin_rad
-        return confirmed >= np.radians(self.rules.lone_confirmed_deg)
+        confirmed = np.count_nonzero(heard.shown > heard.past) * having.bin_rad
+        return bool(confirmed >= np.radians(self.rules.lone_confirmed_deg))
 
 
 def _runs_past(points: Floats, side: Side, rules: Rules) -> Sequence[Run]:

@@ -18,7 +18,7 @@ def rectangle_sides(points: Floats) -> tuple[float, float]:
     along = along / lengths(along)[:, None]
     across = along[:, ::-1] * (-1.0, 1.0)
     widths = [_extent(corners, axes) for axes in (along, across)]
-    least = min(range(len(along)), key=lambda i: (to_order(widths[0][i] * widths[1][i]), i))
+    least = min(range(len(along)), key=lambda i: (to_order(float(widths[0][i] * widths[1][i])), i))
     shorter, longer = sorted(float(width[least]) - 2 * MARGIN_M for width in widths)
     return longer, max(0.0, shorter)
 
