@@ -68,10 +68,12 @@ def test_two_places_that_fit_leave_it_open_which():
     ]
 
 
-def test_things_that_no_single_node_saw_both_have_not_moved():
+def test_a_thing_whose_two_places_two_nodes_saw_has_moved():
     nodes = [Node(0.0, 0.0), Node(0.05, 0.0)]
     before, after = ([ring(node, [box]) for node in nodes] for box in (HERE, THERE))
     unknown = slice(10, 30), np.r_[0:8, 352:360]  # node 0 never sees the new place, node 1 never the old one
     for index, gap in enumerate(unknown):
         before[index][gap] = after[index][gap] = np.nan
-    assert kinds(compare_rings(before, after, nodes=nodes)) == ["appeared", "vanished"]
+    (change,) = compare_rings(before, after, nodes=nodes).changes
+    assert (change.kind, change.nodes) == (Kind.MOVED, (0, 1))
+    assert change.moved_from == pytest.approx((2.95, 0.0), abs=0.03)

@@ -110,7 +110,8 @@ def test_unknown_bins_are_no_change_and_not_compared():
     after[300:340] = np.nan
     difference = compare_rings(before, after)
     assert [change.kind for change in difference.changes] == [Kind.VANISHED]
-    assert difference.compared_bins == 360 - 180 - 40
+    # a surface shown within two bins can be told of: two at either end of both gaps
+    assert difference.compared_bins == 360 - 180 - 40 + 8
 
 
 def test_thing_whose_bins_are_all_unknown_now_has_not_vanished():
@@ -132,14 +133,30 @@ FAR_BOX = Box(6.3, 0.0)  # two degrees are 0.21 m at its face, enough to be a se
 def test_view_round_an_edge_from_a_slightly_other_place_is_no_change():
     """At both edges two degrees changed hands between the box and the wall behind."""
     before = ring(CENTRE, [FAR_BOX], wall=9.0, bins=1440)
-    assert compare_rings(before, np.roll(before, 8)).changes == ()
-    assert len(compare_rings(before, np.roll(before, 8), Rules(edge_deg=0.5)).changes) == 2
-
-
-def test_shift_beyond_the_edge_tolerance_is_a_change():
-    before = ring(CENTRE, [BOX])
     after = np.roll(before, 8)
-    assert {change.kind for change in compare_rings(before, after).changes} == {Kind.VANISHED, Kind.APPEARED}
+    assert compare_rings(before, after).changes == ()
+    assert compare_rings(before, after, Rules(min_apart_m=0.01)).changes == ()
+    assert len(compare_rings(before, after, Rules(min_apart_m=0.01, edge_deg=0.5)).changes) == 2
+
+
+def test_ends_as_close_to_the_surface_as_poses_are_off_are_no_change():
+    """The same step of 0.21 m: only 0.06 m of it lie farther from what still stands than 0.15 m."""
+    before = ring(CENTRE, [FAR_BOX], wall=9.0, bins=1440)
+    assert compare_rings(before, np.roll(before, 8), Rules(edge_deg=0.5)).changes == ()
+
+
+@pytest.mark.parametrize(
+    ("degrees", "kinds"),
+    [
+        (8, set()),  # bins -9..-4 lie beyond two degrees, but only -9..-6 by 0.15 m: four
+        (10, {Kind.VANISHED, Kind.APPEARED}),  # bins -9..-4, six at either side
+    ],
+)
+def test_shift_beyond_the_tolerances_is_a_change(degrees: int, kinds: set[Kind]):
+    before = ring(CENTRE, [BOX])
+    changes = compare_rings(before, np.roll(before, degrees)).changes
+    assert {change.kind for change in changes} == kinds
+    assert [sector.bins(360) for change in changes for sector in change.sectors] == [6] * len(kinds)
 
 
 def test_edge_tolerance_reaches_its_angle_and_no_farther():

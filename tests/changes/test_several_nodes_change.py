@@ -43,19 +43,30 @@ def test_order_of_the_mappings_does_not_matter():
     assert turned == compare(NODES, old, new, radius=RADIUS)
 
 
-def test_node_known_to_one_side_only_is_not_compared():
+def test_what_a_node_known_to_the_older_side_only_showed_another_one_can_see_past():
     old = {0: estimate(0, ring(NODES[0], [BOX])), 1: estimate(1, ring(NODES[1], [BOX]))}
     new = {0: estimate(0, ring(NODES[0]))}
     difference = compare(NODES, old, new, radius=RADIUS)
-    assert difference.silent_nodes == (1,)
-    assert [node.node for node in difference.nodes] == [0]
-    assert difference.changes[0].nodes == (0,)
+    (change,) = difference.changes
+    assert change.nodes == (0,)
+    assert change.bounds == pytest.approx((-0.3, 2.2, 0.3, 2.8), abs=0.1)  # the right face, too
+    # from node 1 the box spans bearings 104.04 .. 120.58 degrees: 17 bin centres
+    assert difference.nodes[1] == ComparedNode(1, 360, 17)
+    assert difference.silent_nodes == ()
 
 
-def test_nothing_in_common_is_an_empty_difference():
-    difference = compare(
-        NODES, {0: estimate(0, ring(NODES[0]))}, {1: estimate(1, ring(NODES[1]))}, radius=RADIUS
-    )
+def test_nodes_of_two_results_without_a_common_one_are_compared_by_place():
+    old, new = {0: estimate(0, ring(NODES[0]))}, {1: estimate(1, ring(NODES[1]))}
+    difference = compare(NODES, old, new, radius=RADIUS)
+    assert difference.changes == ()
+    assert difference.nodes == (ComparedNode(0, 360, 0), ComparedNode(1, 360, 0))
+    assert difference.silent_nodes == ()
+
+
+def test_nodes_that_see_nothing_in_common_are_silent():
+    far = [Node(0.0, 0.0), Node(100.0, 0.0)]
+    old, new = {0: estimate(0, ring(far[0]))}, {1: estimate(1, ring(far[0]))}
+    difference = compare(far, old, new, radius=RADIUS)
     assert (difference.changes, difference.nodes, difference.silent_nodes) == ((), (), (0, 1))
 
 
@@ -100,17 +111,21 @@ def test_two_witnesses_outvote_one_doubter():
     assert len(compare_rings(before, rings(nodes=AROUND), nodes=AROUND).changes) == 1
 
 
-def test_nodes_that_have_not_adopted_the_change_yet_have_no_vote():
-    assert len(with_doubters([[BOX], [BOX]]).changes) == 1
-    assert with_doubters([[], [BOX]]).changes == ()  # one witness, one doubter
+def test_more_than_half_of_the_looks_must_have_adopted_the_change():
+    assert with_doubters([[BOX], [BOX]]).changes == ()  # one of three sees past it
+    assert with_doubters([[BOX]]).changes == ()  # one of two
+    assert len(with_doubters([[], [BOX]]).changes) == 1  # two of three, and two of three had it
 
 
-def test_node_not_seen_again_has_no_vote():
-    assert len(with_doubters([[], []], stamp_ns=1).changes) == 1
+def test_node_not_seen_again_has_a_vote_on_the_older_side_only():
+    assert len(with_doubters([[BOX], [BOX]], stamp_ns=1).changes) == 1
+    assert with_doubters([[], []], stamp_ns=1).changes == ()  # two of three never had it
 
 
-def test_node_that_looked_less_than_five_times_has_no_vote():
-    assert len(with_doubters([[], []], samples=4).changes) == 1
+@pytest.mark.parametrize(("samples", "changes"), [(2, 1), (3, 0)])
+@pytest.mark.parametrize("had", [[[], []], [[BOX], [BOX]]])
+def test_node_that_looked_less_than_three_times_has_no_vote(had, samples, changes):
+    assert len(with_doubters(had, samples=samples).changes) == changes
 
 
 def test_nodes_whose_view_is_blocked_have_no_vote():

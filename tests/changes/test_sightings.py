@@ -1,13 +1,10 @@
-"""What nodes say of a surface, and what stands apart."""
+"""What nodes say of a surface."""
 
 import numpy as np
-import pytest
 
 from tests.changes.rooms import CENTRE, RADIUS, Box, estimate, ring
-from timemap_cli.changes.apart import stands_apart
 from timemap_cli.changes.rings import place, stack
 from timemap_cli.changes.rules import Rules
-from timemap_cli.changes.runs import Run
 from timemap_cli.changes.sightings import GONE, STANDS, UNTOLD, words
 from timemap_cli.model.nodes import Node
 
@@ -56,34 +53,3 @@ def test_what_was_last_looked_at_an_hour_before_the_nodes_newest_scan_is_no_word
         side[0].last_seen_ns[:] = seen_ns
         rings = stack(side, [0])
         assert words(FACE, rings, place([CENTRE], [0], 360, RADIUS), RULES)[0] == said
-
-
-def run_at(points):
-    return Run(0, np.arange(len(points)), np.array(points, float))
-
-
-def apart(points, ranges):
-    side = {0: estimate(0, ranges)}
-    return stands_apart(run_at(points), stack(side, [0]), place([CENTRE], [0], 360, RADIUS), RULES)
-
-
-def test_points_off_all_surfaces_of_the_other_side_stand_apart():
-    assert apart(FACE, ring(CENTRE))
-    assert apart(FACE, np.full(360, np.nan))
-
-
-@pytest.mark.parametrize(("beside_m", "expected"), [(0.1, False), (0.2, True)])
-def test_a_wall_seen_at_a_flat_angle_is_the_same_wall_beside_its_points(beside_m, expected):
-    """A wall along y = 0.5, seen to x = 4: there ranges are 30 times as sensitive as the wall is thick."""
-    bearings = (np.arange(360) + 0.5) * np.pi / 180
-    with np.errstate(divide="ignore"):
-        ranges = np.where(np.sin(bearings) > 0, 0.5 / np.sin(bearings), 9.0)
-    ranges[ranges > 9.0] = 9.0
-    points = [(x, 0.5 - beside_m) for x in (2.0, 2.1, 2.2, 2.3)]
-    assert apart(points, ranges) is expected
-
-
-def test_a_run_needs_three_bins_apart():
-    on_wall = [(5.0 * np.cos(a), 5.0 * np.sin(a)) for a in np.radians((40, 41, 42, 43))]
-    assert not apart([*FACE[:2].tolist(), *on_wall], ring(CENTRE))
-    assert apart([*FACE[:3].tolist(), *on_wall], ring(CENTRE))
