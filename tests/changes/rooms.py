@@ -1,6 +1,6 @@
-"""Rings as a perfect scanner would measure them: boxes in a round room, by ray casting."""
+"""Rings as a perfect scanner would measure them: boxes in a round room, or rooms of boxes, by ray casting."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,23 +9,43 @@ import numpy.typing as npt
 from timemap_cli.changes.compare import compare
 from timemap_cli.changes.difference import Difference
 from timemap_cli.changes.rules import Rules
+from timemap_cli.changes.sides import Side
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 from timemap_cli.model.status import Status
 
 RADIUS = 10.0
 WALL = 5.0
+OUTDOORS = 1000.0  # a round wall that no node sees
 CENTRE = Node(0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Box:
-    """An upright box, axis-aligned, by its centre and side lengths."""
+    """An upright box by its centre and side lengths, along the axes unless it is turned counter-clockwise."""
 
     x: float
     y: float
     width: float = 0.6
     depth: float = 0.6
+    turned_deg: float = 0.0
+
+
+def wall(x_min: float, y_min: float, x_max: float, y_max: float) -> Box:
+    """A wall along the axes, by its corners."""
+    return Box((x_min + x_max) / 2, (y_min + y_max) / 2, x_max - x_min, y_max - y_min)
+
+
+def walls(x_min: float, y_min: float, x_max: float, y_max: float) -> list[Box]:
+    """The four walls of a room, 0.2 m thick, by its inner corners."""
+    left, right, low, high = x_min - 0.2, x_max + 0.2, y_min - 0.2, y_max + 0.2
+    sides = (
+        (left, low, x_min, high),
+        (x_max, low, right, high),
+        (left, low, right, y_min),
+        (left, y_max, right, high),
+    )
+    return [wall(*side) for side in sides]
 
 
 def ring(
@@ -43,9 +63,13 @@ def ring(
 
 def _to_box(node: Node, box: Box, u, v):
     """The slab method: the last entry into both slabs lies before the first exit."""
+    away, ray = complex(box.x - node.x, box.y - node.y), u + 1j * v
+    if box.turned_deg:
+        back = np.exp(-1j * np.radians(box.turned_deg))
+        away, ray = away * back, ray * back
     with np.errstate(divide="ignore"):
-        x = (np.array([[-1.0], [1.0]]) * box.width / 2 + box.x - node.x) / u
-        y = (np.array([[-1.0], [1.0]]) * box.depth / 2 + box.y - node.y) / v
+        x = (np.array([[-1.0], [1.0]]) * box.width / 2 + away.real) / ray.real
+        y = (np.array([[-1.0], [1.0]]) * box.depth / 2 + away.imag) / ray.imag
     enter = np.maximum(x.min(axis=0), y.min(axis=0))
     leave = np.minimum(x.max(axis=0), y.max(axis=0))
     return np.where((enter <= leave) & (enter > 0), enter, np.inf)
@@ -74,3 +98,15 @@ def compare_rings(before, after, rules: Rules | None = None, nodes: Sequence[Nod
     old = {i: estimate(i, r, stamp_ns=1) for i, r in enumerate(before)}
     new = {i: estimate(i, r, stamp_ns=2) for i, r in enumerate(after)}
     return compare(nodes, old, new, rules or Rules(), radius=RADIUS)
+
+
+def estimates(
+    nodes: Sequence[Node], boxes: Sequence[Box] = (), *, wall: float = WALL, stamp_ns: int = 1
+) -> dict[int, Estimate]:
+    """What each node sees of the same boxes, by its number."""
+    return {i: estimate(i, ring(node, boxes, wall), stamp_ns=stamp_ns) for i, node in enumerate(nodes)}
+
+
+def side_of(nodes: Sequence[Node], held: Mapping[int, Estimate], rules: Rules | None = None) -> Side:
+    """One side of a comparison."""
+    return Side.of(held, nodes, RADIUS, rules or Rules())

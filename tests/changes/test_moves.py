@@ -1,10 +1,14 @@
 """When a vanished and an appeared thing are told as one that moved."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from tests.changes.rooms import CENTRE, Box, compare_rings, ring
 from timemap_cli.changes.difference import Kind
+from timemap_cli.changes.moves import pair_moves
+from timemap_cli.changes.rules import Rules
 from timemap_cli.model.nodes import Node
 
 HERE, THERE = Box(3.0, 0.0, 0.1, 0.5), Box(3.0, 0.8, 0.1, 0.5)  # a board, its face toward the node
@@ -77,3 +81,83 @@ def test_a_thing_whose_two_places_two_nodes_saw_has_moved():
     (change,) = compare_rings(before, after, nodes=nodes).changes
     assert (change.kind, change.nodes) == (Kind.MOVED, (0, 1))
     assert change.moved_from == pytest.approx((2.95, 0.0), abs=0.03)
+
+
+ROUND = [Node(0.0, -3.0), Node(-3.0, 3.0), Node(3.0, 3.0)]  # from which two sides and more are seen
+CART = Box(-1.5, 0.0, 0.9, 0.5)
+
+
+def told(after: list[Box], before: Box = CART) -> list[str]:
+    held = ([ring(node, boxes, wall=8.0) for node in ROUND] for boxes in ([before], after))
+    return kinds(compare_rings(*held, nodes=ROUND))
+
+
+@pytest.mark.parametrize("turned_deg", [0.0, 30.0, 90.0])
+def test_what_was_seen_from_two_sides_is_known_again_anywhere_and_turned(turned_deg):
+    assert told([Box(1.5, 0.5, 0.9, 0.5, turned_deg)]) == ["moved"]
+
+
+def test_another_shape_far_away_is_another_thing():
+    assert told([Box(1.5, 0.5, 1.3, 0.5, 90.0)]) == ["appeared", "vanished"]
+
+
+def test_of_two_alike_far_away_neither_is_known_again():
+    assert told([Box(1.5, 0.5, 0.9, 0.5), Box(0.0, 3.0, 0.9, 0.5)]) == ["appeared", "appeared", "vanished"]
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Corners of a rectangle along the axes."""
+
+    points: np.ndarray
+    alone: bool = True
+
+    @classmethod
+    def of(cls, x: float, y: float, width: float, depth: float, *, alone: bool = True) -> "Outline":
+        corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) / 2
+        return cls((x, y) + corners * (width, depth), alone)
+
+
+ONE = Outline.of(0.0, 0.0, 0.8, 0.5)
+
+
+def pairs(gone: list[Outline], come: list[Outline]) -> list[tuple[int, int]]:
+    return pair_moves(gone, come, Rules())
+
+
+@pytest.mark.parametrize(
+    ("other", "expected"),
+    [
+        (Outline.of(20.0, 3.0, 0.5, 0.8), [(0, 0)]),  # turned
+        (Outline.of(20.0, 3.0, 0.91, 0.5), [(0, 0)]),  # sides 0.12 m apart are as good as one
+        (Outline.of(20.0, 3.0, 0.93, 0.5), []),
+        (Outline.of(20.0, 3.0, 0.8, 0.63), []),
+        (Outline.of(20.0, 3.0, 0.8, 0.5, alone=False), []),
+    ],
+)
+def test_the_rectangle_tells_what_moved(other, expected):
+    assert pairs([ONE], [other]) == expected
+    assert pairs([other], [ONE]) == expected
+
+
+@pytest.mark.parametrize(("length_m", "expected"), [(2.7, [(0, 0)]), (2.8, [])])
+def test_long_things_may_differ_by_a_tenth(length_m, expected):
+    assert pairs([Outline.of(0.0, 0.0, 2.5, 0.5)], [Outline.of(9.0, 0.0, length_m, 0.5)]) == expected
+
+
+@pytest.mark.parametrize(
+    ("depth_m", "away_m", "expected"),
+    [(0.0, 0.99, [(0, 0)]), (0.0, 1.01, []), (0.19, 1.01, []), (0.21, 1.01, [(0, 0)])],
+)
+def test_one_face_moves_a_metre_at_most(depth_m, away_m, expected):
+    gone, come = (Outline.of(x, 0.0, 0.8, depth_m) for x in (0.0, away_m))
+    assert pairs([gone], [come]) == expected
+
+
+def test_each_is_used_once_and_what_is_ambiguous_not_at_all():
+    again, long = Outline.of(5.0, 0.0, 0.8, 0.5), Outline.of(0.0, 9.0, 2.0, 0.5)
+    there = Outline.of(9.0, 9.0, 2.0, 0.5)
+    assert pairs([ONE, long], [there, again]) == [(0, 1), (1, 0)]
+    assert pairs([ONE, long], [there, again, Outline.of(9.0, 0.0, 0.8, 0.5)]) == [(1, 0)]
+    assert pairs([ONE, again, long], [Outline.of(9.0, 0.0, 0.8, 0.5), there]) == [(2, 1)]
+    assert pairs([], [ONE]) == pairs([ONE], []) == []

@@ -96,10 +96,10 @@ def test_nodes_of_two_results_are_matched_by_their_place(tmp_path):
     assert (found["nodes"][0]["x"], found["nodes"][0]["y"]) == (NODE.x, NODE.y)
 
 
-def test_results_without_common_nodes_or_settings_cannot_be_compared(tmp_path):
+def test_results_without_a_common_place_or_settings_cannot_be_compared(tmp_path):
     one = write(tmp_path / "one.mcap", [(0, all_levels(True))])
     for name, more, said in (
-        ("far", {"nodes": [Node(50.0, 0.0)]}, "share no nodes"),
+        ("far", {"nodes": [Node(50.0, 0.0)]}, "looked at no common place"),
         ("frame", {"map_frame": "odom"}, "map frame is map here and odom there"),
         ("radius", {"radius": 5.0}, "radius is 10.0 here and 5.0 there"),
     ):
