@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks import pallet_hall
-from benchmarks.changes import building, patrols
+from benchmarks.changes.worlds import building, patrols
 from sample_logs import building as sample_building
 from sample_logs.laser import Mount, Scanner
 from sample_logs.rays import Floats
