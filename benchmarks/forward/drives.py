@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from benchmarks import pallet_hall
-from benchmarks.changes.worlds import building, patrols
+from benchmarks.changes.worlds import pallet_hall, patrols
 from sample_logs import building as sample_building
 from sample_logs.laser import Mount, Scanner
 from sample_logs.rays import Floats
@@ -67,10 +66,11 @@ def places() -> list[Place]:
 
     The near-sighted robot sees 4 m far, and beyond that nothing that is evidence.
     """
-    patrol = patrols.patrols(2)[1]
-    hall = Place("hall", pallet_hall.hall("wh30", 1), pallet_hall.patrol(1), 12.0, missing_is_free=True)
+    patrol = patrols.patrols(2)[1].drive()
+    round_ = pallet_hall.drives("wh30", 1)["day_01"]
+    hall = Place("hall", round_.world, round_.motion, 12.0, missing_is_free=True)
     return [
-        Place("building", building.building(patrol.begins, patrol.walks), building.patrol(2), 25.0),
+        Place("building", patrol.world, patrol.motion, 25.0),
         Place("sample", sample_building.building(0.0, ()), sample_building.patrol(1), 12.0),
         hall,
         replace(hall, name="hall, near-sighted", range_max=4.0, missing_is_free=False),
