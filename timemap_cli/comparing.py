@@ -1,14 +1,20 @@
 """Comparing two levels, two times of a level, or two results."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
+
 from timemap_cli.changes.compare import compare
 from timemap_cli.changes.difference import Difference
 from timemap_cli.changes.rules import Rules
+from timemap_cli.changes.sides import Side
 from timemap_cli.errors import UsageError
+from timemap_cli.maps.alignment import align
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 from timemap_cli.reports.sides import ComparedSide
@@ -81,6 +87,7 @@ def compare_results(one: Path, other: Path, level: str) -> Comparison:
         numbers = _common_numbers(old.nodes, new.nodes)
         nodes = [*old.nodes, *(n for i, n in enumerate(new.nodes) if numbers[i] >= len(old.nodes))]
         before, after = old.estimates(level, None), _renumbered(new.estimates(level, None), numbers)
+        _require_aligned(old_path, new_path, *(_ends(nodes, side, old.radius) for side in (before, after)))
         rules = Rules.of_level(is_fastest=level == old.levels[0])
         difference = compare(nodes, before, after, rules, radius=old.radius)
         if not difference.nodes:
@@ -174,6 +181,33 @@ def _require_same_map(old_path: Path, old: ResultReader, new_path: Path, new: Re
                 f"{old_path} and {new_path} cannot be compared: {what} is {one} here and {other} there",
                 hint="replay both with the same settings",
             )
+
+
+def _ends(nodes: Sequence[Node], estimates: Mapping[int, Estimate], radius: float) -> npt.NDArray[np.float64]:
+    """Where the firm angle bins of all estimates end, (n, 2) [m, map frame]."""
+    if not estimates:
+        return np.empty((0, 2))
+    side = Side.of(estimates, nodes, radius, Rules())
+    return side.ends(*np.nonzero(side.shows_surface))
+
+
+def _require_aligned(
+    old_path: Path, new_path: Path, old: npt.NDArray[np.float64], new: npt.NDArray[np.float64]
+) -> None:
+    """UsageError where the newer surfaces fit the older ones as a whole once they are shifted: nothing has changed."""
+    found = align(new, old)
+    if not found.shifted:
+        return
+    x, y = found.shift
+    turn = math.degrees(found.offset.yaw)
+    loose = ""
+    if found.undetermined is not None:
+        loose = " (along {:.2f}, {:.2f} the place does not tell)".format(*found.undetermined)
+    raise UsageError(
+        f"{new_path} lies beside {old_path}: moved by {x:.2f}, {y:.2f} m and turned by {turn:.1f} degrees{loose} "
+        f"{found.inliers_after:.0%} of its surfaces fit, as it is {found.inliers_before:.0%}",
+        hint="the poses of both must be in one map frame: localise both recordings in the same map",
+    )
 
 
 def _common_numbers(old: Sequence[Node], new: Sequence[Node]) -> list[int]:

@@ -42,7 +42,6 @@ def slow_virtual_scan(scan, row, centre, angle_bins, radius):
 
 def _outline(scan, row, centre):
     first, last = scan.map_from_laser_first[row], scan.map_from_laser_last[row]
-    blind = min(2.5, math.hypot(first[0, 3] - centre[0], first[1, 3] - centre[1]) + 0.1)
     ranges, bearings = scan.ranges[row].astype(float), scan.bearings
     beams = len(bearings)
     corners = []
@@ -51,7 +50,7 @@ def _outline(scan, row, centre):
             run = _run_without_evidence(ranges, i)
             if run[0] > 0 and run[1] < beams and run[1] - run[0] <= 2:
                 continue
-            kind, distance = DISC, blind
+            kind, distance = DISC, _blind(first, last, i / max(1, beams - 1), bearing, centre)
         elif math.isfinite(measured):
             kind, distance = HIT, measured
         else:
@@ -64,8 +63,19 @@ def _outline(scan, row, centre):
         steps = 90
         for i in range(steps + 1):
             bearing = bearings[-1] + sign * gap * i / steps
+            blind = _blind(first, last, 1 - i / steps, bearing, centre)
             corners.append((*_place(first, last, 1 - i / steps, blind, bearing, centre), DISC))
     return corners
+
+
+def _blind(first, last, part, bearing, centre):
+    """The disc's radius; towards a node that the laser drives away from within the sweep as far as the node is then."""
+    away, at_last = (math.hypot(pose[0, 3] - centre[0], pose[1, 3] - centre[1]) for pose in (first, last))
+    if at_last <= away:
+        return min(2.5, away + 0.1)
+    x, y = _place(first, last, part, 0.0, bearing, centre)
+    x1, y1 = _place(first, last, part, 1.0, bearing, centre)
+    return min(2.5, max(away + 0.1, 1.072 * (-x * (x1 - x) - y * (y1 - y)) + 0.02))
 
 
 def _run_without_evidence(ranges, i):

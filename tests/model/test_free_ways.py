@@ -75,6 +75,54 @@ def test_a_robot_that_drove_on_knows_the_way_back():
     assert all(free(drive(HALL, along((-2, 1), (0, 1)), fan(61, 60)), -2.0, 1.0))
 
 
+def blind(places, pause_ns):
+    """Scans without evidence at these places, so long one after the other."""
+    poses = [pose(*place) for place in places]
+    stamps_ns = np.arange(len(places)) * pause_ns
+    return sweeps(np.full((len(places), 181), math.nan), NARROW, poses, stamps_ns=stamps_ns)
+
+
+def test_the_straight_way_between_two_scans_a_moment_apart_is_free():
+    scans = blind([(0.0, 1.0, EAST), (0.7, 1.0, EAST), (1.4, 1.0, EAST)], 10**9)
+    assert free(scans, 0.0, 1.0) == [True, True, True]
+    assert free(scans, 0.3, 1.0 + ROBOT_RADIUS - 0.02) == [False, True, True]
+    assert free(scans, 0.3, 1.0 + ROBOT_RADIUS + 0.02) == [False, False, False]
+
+
+@pytest.mark.parametrize(
+    ("places", "pause_ns"),
+    [
+        ([(0.0, 1.0, EAST), (0.7, 1.0, EAST)], 10**9 + 1),  # it may have gone any way
+        ([(0.0, 1.0, EAST), (0.7, 1.0, NORTH)], 10**8),  # round the end of a wall
+        ([(0.0, 1.0, EAST), (1.1, 1.0, EAST)], 10**8),  # the pose jumped
+    ],
+)
+def test_the_way_between_two_scans_is_not_known_where_it_may_not_have_been_straight(places, pause_ns):
+    assert free(blind(places, pause_ns), 0.0, 1.0) == [True, False]
+
+
+def test_the_way_between_two_scans_is_known_in_other_blocks_and_in_a_later_replay():
+    scans = blind([(0.0, 1.0, EAST), (0.7, 1.0, EAST), (1.4, 1.0, EAST)], 10**9)
+    ways, centres = FreeWays(), np.array([[0.0, 1.0]])
+    for i in range(3):
+        resumed = FreeWays()
+        resumed.restore(ways.kept())
+        ways = resumed
+        assert known(ways, scans.rows(slice(i, i + 1)), centres)[0]
+
+
+@pytest.mark.parametrize("step", [0.3, 0.5, 0.8])
+def test_seldom_scans_know_no_way_through_a_thin_wall(step):
+    walls = np.concatenate((HALL, WALL))
+    for first in np.arange(0.0, step, 0.1):
+        places = along((1.0 + first, 0.4), (3.4, 0.4), (3.4, -0.4), (1.0, -0.4), step=0.1)
+        places = places[:: round(step / 0.1)]
+        scans = drive(walls, places, fan(271, 270))
+        scans = dataclasses.replace(scans, stamps_ns=np.arange(len(places)) * 10**9)
+        other_side = np.array([place[1] < 0 and place[0] < 2.4 for place in places])
+        assert not np.array(free(scans, 1.0 + first, 0.4))[other_side].any()
+
+
 def test_a_node_beside_the_track_is_known_from_the_scans_that_saw_it_ahead():
     scans = drive(HALL, along((-2, 1), (1, 1)))
     assert free(scans, 0.3, 1.6)[-1]

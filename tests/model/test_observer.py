@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.model.drives import GATE, OPEN_GATE, drive, observer
-from tests.model.scenes import ROOM, fan, look_around, pose, rectangle, sweeps
+from tests.model.scenes import ROOM, drive_past, fan, look_around, pose, rectangle, sweeps
 from tests.model.test_free_ways import along
 from tests.model.test_free_ways import drive as drive_along
 from timemap_cli.model.nodes import Node
@@ -136,6 +136,33 @@ def test_a_node_that_a_scan_does_not_look_towards_is_no_reason_to_make_one():
     another_day = dataclasses.replace(away, stamps_ns=away.stamps_ns - 1)
     assert looking.observe(another_day).node_not_seen == 1
     assert len(looking.nodes) == 1
+
+
+def test_a_scan_that_does_not_look_towards_its_nearest_node_goes_to_the_next_that_it_sees():
+    scan = look_around(LANES, 0.0, 0.45, 0.0, fan(181, 180))
+    looking = observer(nodes=[Node(-0.5, 0.45), Node(0.7, 0.5)], spacing=1.0)
+    found = looking.observe(scan)
+    assert (found.nodes.tolist(), found.node_not_seen) == ([1], 0)
+
+
+@pytest.mark.parametrize("degrees", [180, 240, 270])
+@pytest.mark.parametrize("step", [0.05, 0.2, 0.4])
+@pytest.mark.parametrize("evidence", [True, False])
+def test_a_robot_that_drives_forward_loses_no_scan(degrees, step, evidence):
+    """Its sweeps take three quarters of the time from scan to scan; one that sees next to nothing knows its own way."""
+    hall = rectangle(-10, -3, 10, 3)
+    bearings = fan(degrees + 1, degrees)
+    places = along((-8.0, 0.5), (8.0, 0.5), step=step)
+    scans = block(
+        *(drive_past(hall, place, (place[0] + 0.75 * step, *place[1:]), bearings) for place in places)
+    )
+    if not evidence:
+        scans.ranges[:, 5:] = np.nan
+    last = scans.map_from_laser_first.copy()
+    last[:, 0, 3] += 0.75 * step
+    scans = dataclasses.replace(scans, map_from_laser_last=last)
+    found = observer(spacing=1.0).observe(scans)
+    assert (len(found), found.node_not_seen) == (len(places), 0)
 
 
 @pytest.mark.parametrize("degrees", [360, 270])

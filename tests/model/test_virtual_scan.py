@@ -300,6 +300,20 @@ def test_a_near_node_is_judged_from_every_side(degrees, away):
         assert judges(scan, away * math.cos(side), away * math.sin(side))
 
 
+@pytest.mark.parametrize("degrees", [60, 180, 270])
+@pytest.mark.parametrize("driven", [0.1, 0.25, 0.4])
+def test_a_node_that_is_left_behind_within_the_sweep_is_judged(degrees, driven):
+    """The arc behind the field of view is where the laser is by then, not where it was at its first beam."""
+    for yaw in (0.0, 0.7, -2.0):
+        stop = (driven * math.cos(yaw), driven * math.sin(yaw), yaw)
+        scan = drive_past(SQUARE, (0.0, 0.0, yaw), stop, fan(degrees + 1, degrees))
+        for away in np.arange(0.0, 1.7, 0.2):
+            for aside in (-0.2, 0.0, 0.2):
+                x = -away * math.cos(yaw) - aside * math.sin(yaw)
+                y = -away * math.sin(yaw) + aside * math.cos(yaw)
+                assert judges(scan, x, y)
+
+
 def test_a_node_to_which_no_way_is_known_must_be_seen_or_be_where_the_robot_stands():
     scan = look_around(SQUARE, 0.0, 0.0, 0.0, fan(181, 180))
     assert judges(scan, 0.9, 0.3, way=UNKNOWN)

@@ -7,6 +7,7 @@ import numpy as np
 
 from timemap_cli.changes.events import Event
 from timemap_cli.changes.hull import hull
+from timemap_cli.changes.nearby import near
 from timemap_cli.changes.rings import Bools, Floats
 from timemap_cli.changes.rules import Rules
 from timemap_cli.changes.sides import Side
@@ -14,7 +15,8 @@ from timemap_cli.changes.testimony import testimony
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.nodes import Node
 
-_GHOST = 0.6  # share of the nodes that can tell and see past it: a wall in doubt stays, as who plans should go round it
+_GHOST = 0.5  # share of the nodes that can tell and see past it; a wall in doubt stays, as who plans should go round
+_OF_EVENT_M = 0.3  # a surface so near to the points of what is gone is a part of it, whenever it was seen
 _DEFAULT = Rules()
 
 
@@ -28,7 +30,7 @@ def without_ghosts(
     """Estimates of one level, by node, whose angle bins are unknown where they end at a ghost.
 
     A ghost is what most of the nodes that looked lately see past, and what lies in the outline of an event of
-    `vanished` and was not seen since the event last was. `radius` [m] is how far a node sees.
+    `vanished`: near its points, or not seen since the event last was. `radius` [m] is how far a node sees.
     """
     if not estimates:
         return {}
@@ -38,7 +40,9 @@ def without_ghosts(
     ghost = testimony(ends, side, rules).contradicted(_GHOST)
     seen_ns = side.rings.last_seen_ns[rows, bins]
     for event in vanished:
-        ghost |= _inside(ends, hull(event.points)) & (seen_ns <= event.last_seen_ns)
+        inside = np.flatnonzero(_inside(ends, hull(event.points)))
+        is_part = near(ends[inside], event.points, _OF_EVENT_M) | (seen_ns[inside] <= event.last_seen_ns)
+        ghost[inside[is_part]] = True
     ranges = side.rings.ranges.astype(np.float32)
     ranges[rows[ghost], bins[ghost]] = np.nan
     numbers = side.places.numbers.tolist()

@@ -31,7 +31,7 @@ def pair_moves(gone: Sequence[Outlined], come: Sequence[Outlined], rules: Rules)
 
     Both stand alone and have the same least rectangle round them, and neither fits a second partner. One face says
     little: where two sides were not seen, they lie at most `move_max_m` apart. What is in doubt stays one thing
-    vanished and one appeared.
+    vanished and one appeared, and so does what is long and stands across now.
     """
     sides = [[rectangle_sides(thing.points) for thing in things] for things in (gone, come)]
     fits = [
@@ -39,6 +39,7 @@ def pair_moves(gone: Sequence[Outlined], come: Sequence[Outlined], rules: Rules)
         for v, left in enumerate(gone)
         for a, entered in enumerate(come)
         if _is_same(sides[0][v], sides[1][a], rules)
+        and _lies_alike(left, entered, rules)
         and (_is_near(left, entered, rules) or min(sides[0][v][1], sides[1][a][1]) >= rules.move_two_sides_m)
     ]
     gone_uses, come_uses = [v for v, _ in fits], [a for _, a in fits]
@@ -70,6 +71,12 @@ def _ends_on_both_sides(run: Run, having: Side, rules: Rules) -> bool:
 def _is_near(gone: Outlined, come: Outlined, rules: Rules) -> bool:
     apart = gone.points.mean(axis=0) - come.points.mean(axis=0)
     return bool(lengths(apart) <= rules.move_max_m)
+
+
+def _lies_alike(gone: Outlined, come: Outlined, rules: Rules) -> bool:
+    """Whether the bounds of both are of nearly one size: a change names the place that was left by a point alone."""
+    extents = [np.ptp(thing.points, axis=0) for thing in (gone, come)]
+    return bool((np.abs(extents[0] - extents[1]) <= rules.move_turned_m).all())
 
 
 def _is_same(one: tuple[float, float], other: tuple[float, float], rules: Rules) -> bool:

@@ -39,6 +39,7 @@ class Rules:
     max_age_ns: int = 3_600_000_000_000  # an angle bin not seen for an hour has no word on what is watched
     move_max_m: float = 1.0  # beyond a metre another thing of which one face shows the same is as likely
     move_two_sides_m: float = 0.2  # shorter side of what was seen from two sides
+    move_turned_m: float = 0.5  # by which bounds may differ in size: what is turned farther is told as two
     move_shape_m: float = (
         0.12  # sides that differ by more than bin spacing and noise explain are of two shapes ...
     )

@@ -153,9 +153,9 @@ class Observer:
         while begin < len(sweeps):
             rows = np.arange(begin, len(sweeps))
             seen.nodes[rows], known = self._placement.assign(places[rows])
-            hidden = self._judge(seen, rows[seen.nodes[rows] != NO_NODE], sweeps, ways)
-            hidden = hidden[ways.are_blocked(hidden, self._placement.centres_of(seen.nodes[hidden]))]
-            hidden = self._judge_farther(seen, hidden, known[hidden - begin], places, sweeps, ways)
+            unseen = self._judge(seen, rows[seen.nodes[rows] != NO_NODE], sweeps, ways)
+            unseen = self._judge_farther(seen, unseen, known[unseen - begin], places, sweeps, ways)
+            hidden = unseen[ways.are_blocked(unseen, self._placement.centres_of(seen.nodes[unseen]))]
             number = int(known[hidden[0] - begin]) if len(hidden) else 0
             if not len(hidden) or not self._placement.may_insert(number):
                 break

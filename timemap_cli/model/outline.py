@@ -13,6 +13,8 @@ Poses = npt.NDArray[np.float64]
 
 BLIND_MARGIN = 0.1  # [m] by which the disc round the robot reaches beyond a node to which the way is free
 LARGEST_DISC = 2.5  # [m] a node farther away than this must have been seen
+_CHORD = np.float32(1.072)  # 1 / cos^2 of half a step of the arc behind the field of view ...
+_MORE = np.float32(0.02)  # [m] ... and a little, lest the node lie on the chord
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +38,14 @@ def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], ways_free: Bools,
     fan = rays(sweeps, angle_bins)
     origin = first[:, :2, 3] - centres
     missing = np.isnan(fan.length)
-    beyond_node = np.minimum(np.sqrt(origin[:, 0] ** 2 + origin[:, 1] ** 2) + BLIND_MARGIN, LARGEST_DISC)
-    blind = np.where(ways_free, beyond_node, ROBOT_RADIUS)
+    away = _away(origin)
+    blind = np.where(ways_free, np.minimum(away + BLIND_MARGIN, LARGEST_DISC), ROBOT_RADIUS)
     length = np.where(missing, blind.astype(np.float32)[:, None], fan.length)
+    leaves = np.flatnonzero(ways_free & (_away(last[:, :2, 3] - centres) > away))
+    if len(leaves):
+        behind = _beyond_node(first[leaves], last[leaves], centres[leaves], fan.of(leaves))
+        np.maximum(length[leaves], behind, out=behind)
+        length[leaves] = np.where(missing[leaves], behind, length[leaves])
     moves = not np.array_equal(first, last)
     turning = _Turning.of(first, last, fan.progress) if moves else None
     x, y = (_place(first[:, a], (last - first)[:, a], origin[:, a], fan, length, turning) for a in (0, 1))
@@ -51,6 +58,33 @@ def outlines(sweeps: Sweeps, centres: npt.NDArray[np.float64], ways_free: Bools,
     upright = first[:, 0, 0] * first[:, 1, 1] - first[:, 0, 1] * first[:, 1, 0] > 0
     turn = np.where(upright == fan.counter_clockwise, np.float32(1), np.float32(-1))
     return Outlines(x, y, hit, disc, turn[:, None])
+
+
+def _away(offset: Poses) -> Poses:
+    return np.asarray(np.sqrt(offset[:, 0] ** 2 + offset[:, 1] ** 2))
+
+
+def _beyond_node(first: Poses, last: Poses, centres: Poses, fan: Rays) -> Floats:
+    """How long rays (n, rays) [m] towards a node must be to reach beyond it, wherever the laser is by then.
+
+    A laser that drives away within its sweep is farther from the node at its last beam than at its first. A chord
+    over one step of the arc passes outside the node where both its ends reach so far beyond it, each along its ray.
+    """
+    ahead, aside = (
+        [_along(pose, centres, axis).astype(np.float32)[:, None] for pose in (first, last)] for axis in (0, 1)
+    )
+    reach = fan.cos * (ahead[0] + fan.progress * (ahead[1] - ahead[0]))
+    reach += fan.sin * (aside[0] + fan.progress * (aside[1] - aside[0]))
+    reach *= _CHORD
+    reach += _MORE
+    np.minimum(reach, np.float32(LARGEST_DISC), out=reach)
+    return reach
+
+
+def _along(pose: Poses, centres: Poses, axis: int) -> Poses:
+    """How far the node's centre (n,) [m] lies along an axis of the laser."""
+    x, y = (centres - pose[:, :2, 3]).T
+    return np.asarray(pose[:, 0, axis] * x + pose[:, 1, axis] * y)
 
 
 @dataclass(frozen=True, slots=True)

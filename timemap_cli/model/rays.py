@@ -36,6 +36,13 @@ class Rays:
     hit: Bools  # (n, rays)
     counter_clockwise: bool  # from the laser's +x to its +y
 
+    def of(self, scans: npt.NDArray[np.int64]) -> "Rays":
+        """The rays of these scans alone."""
+        cos, sin, progress = (
+            each if len(each) == 1 else each[scans] for each in (self.cos, self.sin, self.progress)
+        )
+        return Rays(cos, sin, progress, self.length[scans], self.hit[scans], self.counter_clockwise)
+
 
 @dataclass(frozen=True, slots=True)
 class _Fan:

@@ -10,7 +10,7 @@ import numpy as np
 from timemap_cli.model.state import State
 from timemap_cli.results.cdr import CdrBuilder, CdrParser
 
-FORMAT = "timemap.state/2"  # changes whenever a replay keeps other things, or means something else by them
+FORMAT = "timemap.state/3"  # changes whenever a replay keeps other things, or means something else by them
 _TYPES = ("|b1", "|u1", "<u2", "<u4", "<i4", "<i8", "<u8", "<f4", "<f8")
 
 
