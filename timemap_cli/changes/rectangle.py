@@ -9,16 +9,18 @@ from timemap_cli.model.ordering import to_order
 
 
 def rectangle_sides(points: Floats) -> tuple[float, float]:
-    """Longer and shorter side [m] of the rectangle of least area round points (n, 2); one side lies along their hull.
+    """Longer and shorter side [m] of the rectangle of least perimeter round points (n, 2).
 
-    Points on a line have a shorter side of nearly 0: one face of a thing was seen.
+    One side lies along their hull. Of a corner between two faces, the rectangle along the diagonal has the same area
+    as the one along the faces, but a longer perimeter. Points on a line have a shorter side of nearly 0: one face of a
+    thing was seen.
     """
     corners = hull(points)
     along = np.roll(corners, -1, axis=0) - corners
     along = along / lengths(along)[:, None]
     across = along[:, ::-1] * (-1.0, 1.0)
     widths = [_extent(corners, axes) for axes in (along, across)]
-    least = min(range(len(along)), key=lambda i: (to_order(float(widths[0][i] * widths[1][i])), i))
+    least = min(range(len(along)), key=lambda i: (to_order(float(widths[0][i] + widths[1][i])), i))
     shorter, longer = sorted(float(width[least]) - 2 * MARGIN_M for width in widths)
     return longer, max(0.0, shorter)
 
