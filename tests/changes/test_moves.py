@@ -129,6 +129,7 @@ def pairs(gone: list[Outline], come: list[Outline]) -> list[tuple[int, int]]:
     ("other", "expected"),
     [
         (Outline.of(20.0, 3.0, 0.5, 0.8), [(0, 0)]),  # turned
+        (Outline.of(20.0, 3.0, 1.5, 0.5), []),
         (Outline.of(20.0, 3.0, 0.91, 0.5), [(0, 0)]),  # sides 0.12 m apart are as good as one
         (Outline.of(20.0, 3.0, 0.93, 0.5), []),
         (Outline.of(20.0, 3.0, 0.8, 0.63), []),
@@ -143,6 +144,12 @@ def test_the_rectangle_tells_what_moved(other, expected):
 @pytest.mark.parametrize(("length_m", "expected"), [(2.7, [(0, 0)]), (2.8, [])])
 def test_long_things_may_differ_by_a_tenth(length_m, expected):
     assert pairs([Outline.of(0.0, 0.0, 2.5, 0.5)], [Outline.of(9.0, 0.0, length_m, 0.5)]) == expected
+
+
+@pytest.mark.parametrize(("length_m", "expected"), [(0.99, [(0, 0)]), (1.01, [])])
+def test_what_is_long_and_stands_across_is_told_as_two(length_m, expected):
+    """Bounds may differ by half a metre."""
+    assert pairs([Outline.of(0.0, 0.0, length_m, 0.5)], [Outline.of(9.0, 0.0, 0.5, length_m)]) == expected
 
 
 @pytest.mark.parametrize(
