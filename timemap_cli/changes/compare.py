@@ -6,7 +6,7 @@ import numpy as np
 
 from timemap_cli.changes.bins import step
 from timemap_cli.changes.difference import Change, ComparedNode, Difference, Kind
-from timemap_cli.changes.lost import Lost, lost_things
+from timemap_cli.changes.lost import Agreement, Lost, lost_things
 from timemap_cli.changes.moves import pair_moves
 from timemap_cli.changes.rings import Bools, Ints
 from timemap_cli.changes.rules import Rules
@@ -47,7 +47,8 @@ def compare(
     if before.places.angle_bins != after.places.angle_bins:
         sizes = sorted((before.places.angle_bins, after.places.angle_bins))
         raise ValueError(f"estimates of {sizes[0]} and {sizes[1]} angle bins cannot be compared")
-    gone, come = lost_things(before, after, rules), lost_things(after, before, rules)
+    gone = lost_things(before, after, rules, Agreement(rules.agreement_before, rules.agreement_after))
+    come = lost_things(after, before, rules, Agreement(rules.agreement_after, rules.agreement_before))
     changes = _told(gone, come, before, after, rules)
     per_node = _counted(known, gone, come, before, after)
     silent = tuple(sorted(set(known) - {one.node for one in per_node}))
@@ -60,8 +61,10 @@ def news(before: Side, now: Side, rules: Rules) -> tuple[Change, ...]:
     seers = np.flatnonzero(fresh.sum(axis=1) >= rules.min_bins)
     if not len(seers):
         return ()
-    come = lost_things(now, before, rules, fresh)
-    gone = lost_things(before, now, rules, _seen_anew(before, now.part(seers, fresh), rules))
+    came = Agreement(having=rules.agreement_after, lacking=rules.agreement_before)
+    went = Agreement(having=rules.agreement_before, lacking=rules.agreement_after)
+    come = lost_things(now, before, rules, came, fresh)
+    gone = lost_things(before, now, rules, went, _seen_anew(before, now.part(seers, fresh), rules))
     return _told(gone, come, before, now, rules)
 
 

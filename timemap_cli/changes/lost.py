@@ -20,6 +20,14 @@ _BETWEEN = (0.25, 0.5, 0.75)  # of the way from one end to the next
 
 
 @dataclass(frozen=True, slots=True)
+class Agreement:
+    """Share of all looks at a thing that must say so, on either side."""
+
+    having: float
+    lacking: float
+
+
+@dataclass(frozen=True, slots=True)
 class Lost:
     """The things that one side has and the other sees past."""
 
@@ -27,7 +35,9 @@ class Lost:
     told: Bools  # (rows, angle_bins) ends of the side that has them of which the other side can tell
 
 
-def lost_things(having: Side, lacking: Side, rules: Rules, among: Bools | None = None) -> Lost:
+def lost_things(
+    having: Side, lacking: Side, rules: Rules, agreement: Agreement, among: Bools | None = None
+) -> Lost:
     """What stands by the looks of `having` and is gone by those of `lacking`; only `among` these angle bins.
 
     Nodes turn one after the other, so what is contested belongs together, and all looks at a thing decide on it as a
@@ -46,7 +56,9 @@ def lost_things(having: Side, lacking: Side, rules: Rules, among: Bools | None =
         points[doubtful[stays]], _standing_near(points[doubtful[stays]], lacking, rules), rules.min_apart_m
     )
     doubtful, own = doubtful[stays], own.part(stays)
-    judge = _Judge(having, lacking, rules, rows[doubtful], bins[doubtful], heard.part(doubtful), own)
+    judge = _Judge(
+        having, lacking, rules, agreement, rows[doubtful], bins[doubtful], heard.part(doubtful), own
+    )
     return Lost(tuple(judge.things()), told)
 
 
@@ -57,6 +69,7 @@ class _Judge:
     having: Side
     lacking: Side
     rules: Rules
+    agreement: Agreement
     rows: Ints  # (n,) of the contested angle bins
     bins: Ints  # (n,)
     heard: Testimony  # of the lacking side on their ends
@@ -79,8 +92,8 @@ class _Judge:
         return [thing for thing in found if thing.passed and self._is_witnessed(thing)]
 
     def _is_lost(self, points: Ints) -> bool:
-        agreement = self.rules.agreement
-        gone, stood = self.heard.is_gone(points, agreement), self.own.stands(points, agreement)
+        gone = self.heard.is_gone(points, self.agreement.lacking)
+        stood = self.own.stands(points, self.agreement.having)
         return gone and stood and len(points) >= self.rules.min_thing_bins
 
     def _is_witnessed(self, thing: Thing) -> bool:

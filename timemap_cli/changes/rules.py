@@ -32,7 +32,8 @@ class Rules:
     min_contested: float = (
         0.25  # share of the looks from which a point may have changed: nodes turn one by one
     )
-    agreement: float = 0.5  # share of all looks at a thing that must say so
+    agreement_before: float = 0.5  # share of all looks at a thing that must say so, on the older side ...
+    agreement_after: float = 0.5  # ... and on the newer one: nodes of a slow level turn one after the other
     lone_confirmed_deg: float = (
         120.0  # of its circle; a node that alone shows a thing must be right about the rest
     )
@@ -46,6 +47,14 @@ class Rules:
     move_shape_share: float = 0.1  # ... and of long ones, by more than this share
 
     @classmethod
-    def of_level(cls, is_fastest: bool) -> "Rules":
+    def of_level(cls, *, is_fastest: bool) -> "Rules":
         """The rules for a level; the fastest one turns within a pass: if its nodes disagree, somebody walked by."""
-        return cls(agreement=0.75) if is_fastest else cls()
+        return cls(agreement_before=0.75, agreement_after=0.75) if is_fastest else cls()
+
+    @classmethod
+    def of_candidates(cls, *, is_fastest: bool) -> "Rules":
+        """The rules for a level beside what the slowest one held before, which has settled.
+
+        A candidate that is not sure in one round is asked for again in the next.
+        """
+        return cls(agreement_before=0.75, agreement_after=0.75 if is_fastest else 0.67)

@@ -91,7 +91,7 @@ class Tracker:
             return
         held = Side.of(before, nodes, self.radius, self._rules)
         for level in reversed(self.levels):  # slower levels know the outline better
-            rules = Rules.of_level(is_fastest=level == self.levels[0])
+            rules = Rules.of_candidates(is_fastest=level == self.levels[0])
             renewed = {
                 n: e
                 for n, e in view.estimates[level].items()
