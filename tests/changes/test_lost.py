@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.changes.rooms import OUTDOORS, Box, estimate, estimates, ring, side_of, wall, walls
-from timemap_cli.changes.lost import lost_things
+from timemap_cli.changes.lost import Agreement, lost_things
 from timemap_cli.changes.rules import Rules
 from timemap_cli.model.nodes import Node
 
@@ -15,7 +15,8 @@ BOX = Box(0.0, 2.3)
 
 def lost(having, lacking, nodes=(A, B), rules=RULES, among=None):
     """Things of estimates by node that other estimates lack."""
-    return lost_things(*(side_of(nodes, side, rules) for side in (having, lacking)), rules, among)
+    sides = [side_of(nodes, side, rules) for side in (having, lacking)]
+    return lost_things(*sides, rules, Agreement(0.5, 0.5), among)
 
 
 def seen_by(number: int, *boxes: Box, node: Node | None = None):
