@@ -51,13 +51,12 @@ def lost_things(
     told[rows[heard.told], bins[heard.told]] = True
     doubtful = np.flatnonzero(heard.contradicted(rules.min_contested))
     own = testimony(points[doubtful], having, rules)
-    stays = ~own.contradicted(1 - rules.min_contested)
-    stays[stays] = ~near(
-        points[doubtful[stays]], _standing_near(points[doubtful[stays]], lacking, rules), rules.min_apart_m
-    )
-    doubtful, own = doubtful[stays], own.part(stays)
+    stood = ~own.contradicted(1 - rules.min_contested)
+    doubtful, own = doubtful[stood], own.part(stood)
+    standing = _standing_near(points[doubtful], lacking, rules)
+    apart = ~near(points[doubtful], standing, rules.min_apart_m)
     judge = _Judge(
-        having, lacking, rules, agreement, rows[doubtful], bins[doubtful], heard.part(doubtful), own
+        having, lacking, rules, agreement, rows[doubtful], bins[doubtful], apart, heard.part(doubtful), own
     )
     return Lost(tuple(judge.things()), told)
 
@@ -72,6 +71,7 @@ class _Judge:
     agreement: Agreement
     rows: Ints  # (n,) of the contested angle bins
     bins: Ints  # (n,)
+    apart: Bools  # (n,) the end lies on no surface that stands on the lacking side
     heard: Testimony  # of the lacking side on their ends
     own: Testimony  # of the having side
 
@@ -81,7 +81,11 @@ class _Judge:
         number = np.zeros(contested.shape, np.int64)
         contested[self.rows, self.bins] = True
         number[self.rows, self.bins] = np.arange(len(self.rows))
-        runs = find_runs(contested, self.having.rings.ranges, self.having.places, self.rules)
+        runs = [
+            run
+            for run in find_runs(contested, self.having.rings.ranges, self.having.places, self.rules)
+            if np.count_nonzero(self.apart[number[run.row, run.bins]]) >= self.rules.min_bins
+        ]
         found: list[Thing] = []
         for thing in link(runs, self.rules.link_m):
             which = np.concatenate([number[run.row, run.bins] for run in thing.runs])
