@@ -141,3 +141,14 @@ def test_older_looks_that_newer_ones_contradict_do_not_have_it():
     assert lost(held, seen_by(1)).things == ()
     held[1] = estimate(1, np.full(360, np.nan), stamp_ns=12 * minute)
     assert len(lost(held, seen_by(1)).things) == 1
+
+
+def test_a_part_that_the_side_itself_knows_better_is_left_out():
+    """One node of five still shows the whole of a board of which the right half went long ago."""
+    nodes = [Node(-0.5 + 0.25 * i, 0.0) for i in range(5)]
+    whole, half = wall(-1.0, 2.0, 1.0, 2.1), wall(-1.0, 2.0, 0.0, 2.1)
+    held = estimates(nodes, [half]) | {0: estimate(0, ring(nodes[0], [whole]))}
+    (thing,) = lost(held, estimates(nodes), nodes).things
+    assert thing.points[:, 0].min() == pytest.approx(-1.0, abs=0.05)
+    # at 2 m two degrees are 0.08 m, within which the others do not see past the end
+    assert thing.points[:, 0].max() == pytest.approx(0.05, abs=0.1)

@@ -73,3 +73,9 @@ def test_fewer_than_three_fresh_bins_have_no_news():
 def test_what_was_clear_and_is_clear_is_not_fresh():
     clear = side_of(NODES, {0: estimate(0, np.full(360, np.inf))})
     assert news(clear, clear, RULES) == ()
+
+
+def test_what_a_node_saw_past_before_is_no_news_when_it_shows_something_else():
+    """Node 2 never had the box that the others hold, and says so still; new is another one behind it."""
+    other = Box(0.0, -3.0)
+    assert told({0: [BOX], 1: [BOX], 2: []}, {2: [other]}) == ["appeared"]

@@ -50,11 +50,6 @@ class Places:
         """Ends of ranges (n,) [m] at the centres of angle bins (n,) of one row or of one each, (n, 2) [m] map frame."""
         return np.asarray(self.centres[rows] + ranges[:, None] * _directions(self.angle_bins)[bins])
 
-    def ends(self, ranges: Floats) -> Floats:
-        """Ends of ranges (..., angle_bins) [m] as (..., angle_bins, 2) [m] from their node; NaN where there is none."""
-        finite = np.where(np.isfinite(ranges), ranges, np.nan)
-        return np.asarray(finite[..., None] * _directions(self.angle_bins))
-
     def edge_bins(self, rules: Rules) -> int:
         """How many bins to either side an edge may shift; at least one."""
         return max(1, int(np.radians(rules.edge_deg) / self.bin_rad + 1e-9))
@@ -64,12 +59,6 @@ class Places:
 def _directions(angle_bins: int) -> Floats:
     """Unit vectors (angle_bins, 2) to the centre of each angle bin."""
     return np.stack(cos_sin(np.arange(0.5, angle_bins) * (2 * np.pi / angle_bins)), axis=1)
-
-
-def comparable(old: Mapping[int, Estimate], new: Mapping[int, Estimate], only_renewed: bool) -> list[int]:
-    """Numbers of the nodes that both sides know, ascending; with `only_renewed` those seen in between."""
-    both = sorted(old.keys() & new.keys())
-    return [n for n in both if not only_renewed or old[n].stamp_ns != new[n].stamp_ns]
 
 
 def place(nodes: Sequence[Node], numbers: Sequence[int], angle_bins: int, radius: float) -> Places:

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from timemap_cli.changes.bins import seen_past, step
-from timemap_cli.changes.rings import Bools, Floats, Ints, Places, Rings
+from timemap_cli.changes.rings import Floats, Ints, Places, Rings
 from timemap_cli.changes.rules import Rules
 from timemap_cli.model.elementary import bearings, lengths
 
@@ -42,14 +42,3 @@ def towards(points: Floats, places: Places) -> tuple[Ints, Ints, Floats]:
     turned = bearings(offset[..., 0], offset[..., 1])
     bins = np.floor(turned / places.bin_rad).astype(np.int64) % places.angle_bins
     return rows, bins, lengths(offset)
-
-
-def look(
-    side: Rings, rows: Ints, bins: Ints, ranges: Floats, places: Places, rules: Rules
-) -> tuple[Bools, Bools]:
-    """Whether a side shows surfaces at `ranges`, within the edge tolerance, and whether it sees past them."""
-    by = step(ranges, rules)
-    shown = np.zeros(ranges.shape, dtype=np.bool_)
-    for shift in range(-places.edge_bins(rules), places.edge_bins(rules) + 1):
-        shown |= np.abs(side.ranges[rows, (bins + shift) % places.angle_bins] - ranges) <= by
-    return shown, seen_past(ranges, side.ranges[rows, bins], places.radius, rules) & ~shown
