@@ -140,23 +140,25 @@ def test_view_round_an_edge_from_a_slightly_other_place_is_no_change():
 
 
 def test_ends_as_close_to_the_surface_as_poses_are_off_are_no_change():
-    """The same step of 0.21 m: only 0.06 m of it lie farther from what still stands than 0.15 m."""
+    """Of 0.16 m at each edge less than one bin lies farther from what still stands than 0.15 m; of 0.21 m three do."""
     before = ring(CENTRE, [FAR_BOX], wall=9.0, bins=1440)
-    assert compare_rings(before, np.roll(before, 8), Rules(edge_deg=0.5)).changes == ()
+    assert compare_rings(before, np.roll(before, 6), Rules(edge_deg=0.5)).changes == ()
+    assert len(compare_rings(before, np.roll(before, 8), Rules(edge_deg=0.5)).changes) == 2
 
 
 @pytest.mark.parametrize(
     ("degrees", "kinds"),
     [
-        (8, set()),  # bins -9..-4 lie beyond two degrees, but only -9..-6 by 0.15 m: four
-        (10, {Kind.VANISHED, Kind.APPEARED}),  # bins -9..-4, six at either side
+        (6, set()),  # of six bins at either side two are the edge's tolerance; four are less than 0.15 m wide
+        (7, {Kind.VANISHED, Kind.APPEARED}),
+        (10, {Kind.VANISHED, Kind.APPEARED}),
     ],
 )
 def test_shift_beyond_the_tolerances_is_a_change(degrees: int, kinds: set[Kind]):
     before = ring(CENTRE, [BOX])
     changes = compare_rings(before, np.roll(before, degrees)).changes
     assert {change.kind for change in changes} == kinds
-    assert [sector.bins(360) for change in changes for sector in change.sectors] == [6] * len(kinds)
+    assert [s.bins(360) for change in changes for s in change.sectors] == [degrees - 2] * len(kinds)
 
 
 def test_edge_tolerance_reaches_its_angle_and_no_farther():
