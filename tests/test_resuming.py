@@ -182,7 +182,7 @@ def test_a_result_of_a_timemap_that_kept_other_things_is_refused(tmp_path, monke
     monkeypatch.setattr(writer.state_messages, "FORMAT", "timemap.state/0")
     old = replay([log], tmp_path / "old.timemap.mcap", SETTINGS).result
     with pytest.raises(
-        TimemapError, match=r"holds timemap\.state/0 of timemap .* which reads timemap\.state/2"
+        TimemapError, match=r"holds timemap\.state/0 of timemap .* which reads timemap\.state/3"
     ):
         Earlier.of(old)
 

@@ -1,6 +1,7 @@
 """What differs between two sides, asked of places: what one node has seen counts for what another one holds."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from timemap_cli.changes.lost import Agreement, Lost, lost_things
 from timemap_cli.changes.moves import pair_moves
 from timemap_cli.changes.rings import Bools, Ints
 from timemap_cli.changes.rules import Rules
-from timemap_cli.changes.runs import Run
+from timemap_cli.changes.runs import Run, find_runs
 from timemap_cli.changes.sides import Side
 from timemap_cli.changes.telling import Teller
 from timemap_cli.changes.testimony import testimony
@@ -19,6 +20,8 @@ from timemap_cli.model.nodes import Node
 from timemap_cli.model.ordering import to_order
 
 _DEFAULT = Rules()
+_CELL_M = 0.1
+_CELLS = 1 << 31  # in a row, more than any map has
 
 
 def compare(
@@ -58,32 +61,45 @@ def compare(
 def news(before: Side, now: Side, rules: Rules) -> tuple[Change, ...]:
     """Changes from `before` to the nodes that look `now`, as far as they show what they did not show before."""
     fresh = _fresh_bins(before, now, rules)
-    seers = np.flatnonzero(fresh.sum(axis=1) >= rules.min_bins)
+    seers = np.flatnonzero(fresh.any(axis=1))
     if not len(seers):
         return ()
     came = Agreement(having=rules.agreement_after, lacking=rules.agreement_before)
     went = Agreement(having=rules.agreement_before, lacking=rules.agreement_after)
-    come = lost_things(now, before, rules, came, fresh)
-    gone = lost_things(before, now, rules, went, _seen_anew(before, now.part(seers, fresh), rules))
+    come = lost_things(now, before, rules, came, _seen_past(now, fresh, before, rules))
+    past = _seen_past(before, before.shows_surface, now, rules)
+    anew = _seen_past(before, past, now.part(seers, fresh), rules) if past.any() else past
+    gone = lost_things(before, now, rules, went, anew)
     return _told(gone, come, before, now, rules)
 
 
 def _fresh_bins(before: Side, now: Side, rules: Rules) -> Bools:
-    """Angle bins (rows, angle_bins) of the nodes `now` that they did not show so before."""
+    """Angle bins (rows, angle_bins) of the nodes `now`, enough side by side, that they did not show so before."""
     rows = np.searchsorted(before.places.numbers, now.places.numbers)
     rows = np.minimum(rows, len(before.places.numbers) - 1)
     known = (before.places.numbers[rows] == now.places.numbers)[:, None] & before.firm[rows]
     was, shown = before.rings.ranges[rows], now.rings.ranges
     with np.errstate(invalid="ignore"):  # clear less clear
         same = (was == shown) | (np.abs(was - shown) <= step(np.minimum(was, shown), rules))
-    return np.asarray(now.firm & ~(known & same))
+    fresh = now.firm & ~(known & same)
+    reach = np.minimum(shown, now.places.radius)
+    in_runs = np.zeros(fresh.shape, np.bool_)
+    for run in find_runs(fresh, np.nan_to_num(reach), now.places, replace(rules, max_jump_m=np.inf)):
+        in_runs[run.row, run.bins] = True
+    return in_runs
 
 
-def _seen_anew(before: Side, seers: Side, rules: Rules) -> Bools:
-    """Angle bins (rows, angle_bins) of `before` that end where one of the seers firmly sees past."""
-    rows, bins = np.nonzero(before.shows_surface)
-    past = testimony(before.ends(rows, bins), seers, rules).past > 0
-    found = np.zeros(before.firm.shape, np.bool_)
+def _seen_past(having: Side, among: Bools, lacking: Side, rules: Rules) -> Bools:
+    """Of `among`, the angle bins (rows, angle_bins) whose ends nodes of `lacking` see past.
+
+    One end of each cell of 10 cm is asked for all: what is lost is larger.
+    """
+    rows, bins = np.nonzero(having.shows_surface & among)
+    ends = having.ends(rows, bins)
+    cells = np.floor(ends / _CELL_M).astype(np.int64)
+    _, first, cell = np.unique(cells[:, 0] * _CELLS + cells[:, 1], return_index=True, return_inverse=True)
+    past = testimony(ends[first], lacking, rules).contradicted(rules.min_contested)[cell]
+    found = np.zeros(having.firm.shape, np.bool_)
     found[rows[past], bins[past]] = True
     return found
 

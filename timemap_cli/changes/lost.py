@@ -50,6 +50,8 @@ def lost_things(
     told = np.zeros(having.firm.shape, np.bool_)
     told[rows[heard.told], bins[heard.told]] = True
     doubtful = np.flatnonzero(heard.contradicted(rules.min_contested))
+    if len(doubtful) < rules.min_bins:
+        return Lost((), told)
     own = testimony(points[doubtful], having, rules)
     stood = ~own.contradicted(1 - rules.min_contested)
     doubtful, own = doubtful[stood], own.part(stood)
