@@ -67,8 +67,9 @@ def news(before: Side, now: Side, rules: Rules) -> tuple[Change, ...]:
     came = Agreement(having=rules.agreement_after, lacking=rules.agreement_before)
     went = Agreement(having=rules.agreement_before, lacking=rules.agreement_after)
     come = lost_things(now, before, rules, came, _seen_past(now, fresh, before, rules))
-    past = _seen_past(before, before.shows_surface, now, rules)
-    anew = _seen_past(before, past, now.part(seers, fresh), rules) if past.any() else past
+    anew = _seen_past(before, before.shows_surface, now.part(seers, fresh), rules)
+    if anew.any():
+        anew = _seen_past(before, anew, now, rules)
     gone = lost_things(before, now, rules, went, anew)
     return _told(gone, come, before, now, rules)
 
