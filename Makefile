@@ -5,6 +5,7 @@
 # make bench   how fast a replay is beside plain reading
 # make changes-bench  how well changes are told where they are known
 # make forward-bench  how many scans of a robot that drives forward are lost, and what the others claim
+# make lost-bench  what the guard sets aside: of robots that are lost, and of those that are not
 # make damage  what becomes of recordings that are damaged at random
 # make kill-bench  replays stopped at random moments, by kill -9 and otherwise: nothing earlier is lost
 # make mutations  which mistakes timemap check catches, and whether noise alone passes
@@ -19,7 +20,7 @@ SAMPLES := sample_logs/patrol_monday.mcap sample_logs/patrol_tuesday.bag sample_
 # The versions in constraints.txt hold for the tools that build the package, too.
 PIP_INSTALL := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
 
-.PHONY: setup demo test check bench changes-bench forward-bench damage kill-bench mutations paper clean
+.PHONY: setup demo test check bench changes-bench forward-bench lost-bench damage kill-bench mutations paper clean
 .DELETE_ON_ERROR:
 
 setup: $(VENV)/timemap.stamp
@@ -49,6 +50,9 @@ changes-bench: $(VENV)/timemap.stamp
 
 forward-bench: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.forward
+
+lost-bench: $(VENV)/timemap.stamp
+	$(BIN)/python -m benchmarks.lost $(LOGS)
 
 damage: $(VENV)/timemap.stamp
 	$(BIN)/python -m benchmarks.damage

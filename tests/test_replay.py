@@ -167,7 +167,7 @@ def test_nodes_that_are_nowhere_near_are_named_where_some_scans_have_no_pose(tmp
 def test_scans_that_contradict_what_was_long_held_are_counted_as_lost_and_told(tmp_path):
     logs = [
         standing_log(tmp_path / "a.mcap"),
-        standing_log(tmp_path / "b.mcap", start_ns=START_NS + DAY_NS, wall=4.0),
+        standing_log(tmp_path / "b.mcap", start_ns=START_NS + DAY_NS, wall=2.8),
     ]
     summary = replayed(tmp_path, *logs, settings=load(None, {"gate": NO_GATE}))
     assert (summary.scans_read, summary.scans_used, summary.dropped) == (200, 100, {"lost": 100})

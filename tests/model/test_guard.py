@@ -18,9 +18,12 @@ def estimate(ranges, node=0, samples=15):
     return Estimate(node, "long", 0, np.float32(ranges), same, same, *rest)
 
 
+ELSEWHERE = range(30, 38)  # nodes at which the robot is lost just before, unless a test says otherwise
+
+
 def guard(max_contradiction=0.75, *, window=100, samples=15):
     made = Guard(max_contradiction, angle_bins=12, radius=10.0, window=window)
-    made.expect([estimate(HELD, samples=samples)])
+    made.expect([estimate(HELD, samples=samples), *(estimate(HELD, node) for node in ELSEWHERE)])
     return made
 
 
@@ -31,8 +34,18 @@ def observations(scans, *, every_ns=MINUTE_NS, start_ns=0, moving=True, nodes=No
     return Observations(nodes, stamps_ns, codes(scans), np.full(n, moving), 0, 0, [])
 
 
-def believed(judge, scans, **options):
-    return judge.believed(observations(scans, **options)).tolist()
+def believed(judge, scans, *, before=OTHER, **options):
+    """Which scans are believed of a robot that saw `before` at nodes elsewhere."""
+    seen = observations(scans, **options)
+    passing = [before] * len(ELSEWHERE)
+    start_ns = int(seen.stamps_ns[0]) - len(passing)
+    judge.believed(observations(passing, every_ns=1, start_ns=start_ns, nodes=[*ELSEWHERE]))
+    return judge.believed(seen).tolist()
+
+
+def test_what_contradicts_one_node_alone_is_a_changed_world_and_is_believed_at_once():
+    assert believed(guard(), [NEW] * 3, before=HELD) == [True] * 3
+    assert believed(guard(), [NEW] * 3, before=OTHER) == [False] * 3
 
 
 def test_a_scan_that_contradicts_three_quarters_is_set_aside():
@@ -134,6 +147,8 @@ def test_the_guard_remembers_from_block_to_block(size):
         return Observations(nodes[rows], stamps_ns, codes(part), moving[rows], 0, 0, [])
 
     one, other = guard(), guard()
+    for judge in (one, other):
+        believed(judge, [NEW], start_ns=-MINUTE_NS)
     whole = one.believed(seen(slice(None))).tolist()
     parts = [other.believed(seen(slice(i, i + size))) for i in range(0, 400, size)]
     assert np.concatenate(parts).tolist() == whole
@@ -141,6 +156,20 @@ def test_the_guard_remembers_from_block_to_block(size):
 
 
 def test_nothing_is_kept_of_a_node_that_was_never_estimated_however_much_room_there_is():
-    judge = guard()
-    judge.expect([estimate(HELD, node=9)])
+    judge = Guard(0.75, angle_bins=12, radius=10.0, window=100)
+    judge.expect([estimate(HELD), estimate(HELD, node=9)])
     assert [judge.kept(node) == {} for node in (0, 1, 8, 9, 10)] == [False, True, True, False, True]
+
+
+def test_what_was_kept_goes_on():
+    """A robot that is lost elsewhere and comes to a node: who did not see the way there knows nothing of it."""
+    one, other, unknowing = guard(), guard(), guard()
+    believed(one, [HELD])
+    nodes = [0, *ELSEWHERE]
+    for node in nodes:
+        other.restore(node, one.kept(node))
+        unknowing.restore(node, one.kept(node))
+    other.restore_of_all(one.kept_of_all())
+    later = observations([NEW] * 3, start_ns=10**9)
+    assert one.believed(later).tolist() == other.believed(later).tolist() == [False] * 3
+    assert unknowing.believed(later).tolist() == [True] * 3

@@ -18,7 +18,7 @@ CLEAR_MARGIN = 2  # in steps: a surface so close to the radius may be clear at t
 MIN_VIEW = 60 / 360  # of the circle: where both know less nothing is decided
 MIN_SUPPORT = 0.5  # of a firm range
 
-_ANYTHING = 65535  # width of bounds that say nothing
+ANYTHING = 65535  # width of bounds that say nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +37,14 @@ class Bounds:
         low = np.maximum(0, np.where(ranges == CLEAR, rim, at - step))
         high = np.where(at > rim, CLEAR, at + step)
         unknown = ranges == UNSEEN
-        low[unknown], high[unknown] = 0, _ANYTHING
+        low[unknown], high[unknown] = 0, ANYTHING
         return cls(low.astype(np.uint16), (high - low).astype(np.uint16))
 
     @classmethod
     def open(cls, rows: int, angle_bins: int) -> "Bounds":
         """Bounds that nothing contradicts."""
         shape = (rows, angle_bins)
-        return cls(np.zeros(shape, np.uint16), np.full(shape, _ANYTHING, np.uint16))
+        return cls(np.zeros(shape, np.uint16), np.full(shape, ANYTHING, np.uint16))
 
     def __len__(self) -> int:
         return len(self.low)
@@ -55,7 +55,7 @@ class Bounds:
 
     def say_something(self, row: int) -> bool:
         """Whether a virtual scan can contradict this row."""
-        return bool((self.width[row] != _ANYTHING).any())
+        return bool((self.width[row] != ANYTHING).any())
 
     def with_rows(self, rows: Ints, other: "Bounds") -> "Bounds":
         """These bounds with others in the place of some rows; changes them, and makes room for new rows."""
@@ -74,7 +74,7 @@ class Bounds:
         both = ranges != UNSEEN
         outside = ranges - self.low > self.width  # whole numbers wrap: what lies below is far above
         outside &= both
-        both &= self.width != _ANYTHING
+        both &= self.width != ANYTHING
         known = both.sum(axis=1)
         share = outside.sum(axis=1) / np.maximum(1, known)
         share[known < ranges.shape[1] * MIN_VIEW] = np.nan

@@ -1,7 +1,7 @@
 """Which scans are not learnt: those of a lost robot contradict nearly all that their node has long held.
 
-A changed world is told from a lost robot by scans that go on to contradict, and agree with each other while the
-robot moves.
+A changed world is told from a lost robot by what the robot saw at the nodes before (`Whereabouts`); where that does
+not tell them apart, by scans that go on to contradict, and agree with each other while the robot moves.
 """
 
 import math
@@ -9,12 +9,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from timemap_cli.model.contradiction import Bounds, firm_ranges
 from timemap_cli.model.estimates import Estimate
 from timemap_cli.model.observer import Observations
 from timemap_cli.model.state import State
 from timemap_cli.model.virtual_scan import UNSEEN, Bools, Ranges
+from timemap_cli.model.whereabouts import Whereabouts
 
 ENOUGH_SCANS = 15  # samples behind a range that judges; and scans of a moving robot that overrule it ...
 PERSISTENCE_NS = 600_000_000_000  # ... if so much time lies between the first of them and the last
@@ -39,7 +41,7 @@ class Guard:
     """Judges scans by the newest estimate that the slowest level made of their node."""
 
     def __init__(self, max_contradiction: float, *, angle_bins: int, radius: float, window: int) -> None:
-        """`max_contradiction`: share of the angle bins from which on a scan is set aside; at 1 none is.
+        """`max_contradiction`: share of the angle bins from which on a scan may be set aside; at 1 none is.
 
         `radius`: how far a node looks [m]; `window`: samples that the slowest level holds.
         """
@@ -48,6 +50,7 @@ class Guard:
         self._min_samples = min(ENOUGH_SCANS, window)
         self._expected = Bounds.open(0, angle_bins)  # a row for each node
         self._doubts: dict[int, Doubt] = {}  # by node
+        self._whereabouts = Whereabouts(max_contradiction, angle_bins)
 
     def expect(self, estimates: Iterable[Estimate]) -> None:
         """Judge their nodes by these estimates of the slowest level from now on."""
@@ -57,6 +60,7 @@ class Guard:
         nodes = np.array([estimate.node for estimate in found], np.int64)
         bounds = Bounds.around(firm_ranges(found, self._min_samples), self._reach)
         self._expected = self._expected.with_rows(nodes, bounds)
+        self._whereabouts.forget(set(nodes.tolist()))
         for node in self._doubts.keys() & set(nodes.tolist()):
             if self._agree(self._doubts[node].witness, self._expected.rows(np.array([node]))):
                 del self._doubts[node]  # it has been learnt
@@ -64,17 +68,34 @@ class Guard:
     def believed(self, seen: Observations) -> Bools:
         """Which of n observations may be learnt (n,); they must come in stamp order."""
         believed = np.ones(len(seen), np.bool_)
-        rows = np.flatnonzero(seen.nodes < len(self._expected))
-        if not len(rows):
-            return believed
-        nodes = seen.nodes[rows]
-        share = self._expected.rows(nodes).contradiction(seen.ranges[rows])
-        doubtful = share >= self._max
-        if doubtful.any() or self._doubts:
-            in_doubt = np.isin(nodes, [*self._doubts, *nodes[doubtful].tolist()])
-            for i in np.flatnonzero(in_doubt & ~np.isnan(share)).tolist():
-                believed[rows[i]] = self._hear(seen, int(rows[i]), doubtful=bool(doubtful[i]))
+        shares = self._contradictions(seen).tolist()
+        rows = zip(seen.nodes.tolist(), seen.stamps_ns.tolist(), shares, strict=True)
+        for row, (node, stamp_ns, share) in enumerate(rows):
+            self._whereabouts.come_to(stamp_ns)
+            if math.isnan(share):
+                continue
+            self._whereabouts.see(node, seen.ranges[row], share)
+            doubtful = share >= self._max
+            if doubtful and not self._whereabouts.are_wrong(seen.ranges[row], self._expected):
+                continue
+            if doubtful or node in self._doubts:
+                believed[row] = self._hear(seen, row, doubtful=doubtful)
         return believed
+
+    def _contradictions(self, seen: Observations) -> npt.NDArray[np.float64]:
+        """Share (n,) of each observation that contradicts what is expected; NaN where too little is."""
+        shares = np.full(len(seen), np.nan)
+        rows = np.flatnonzero(seen.nodes < len(self._expected))
+        shares[rows] = self._expected.rows(seen.nodes[rows]).contradiction(seen.ranges[rows])
+        return shares
+
+    def kept_of_all(self) -> State:
+        """What is known of the robot, for `restore_of_all`."""
+        return self._whereabouts.kept()
+
+    def restore_of_all(self, state: State) -> None:
+        """Take over what another guard kept of no node alone."""
+        self._whereabouts.restore(state)
 
     def kept(self, node: int) -> State:
         """What is expected of a node, and doubted, for `restore`."""

@@ -93,6 +93,7 @@ class Learner:
                 self._newest_ns = one.state["newest_ns"]
                 self._schedule.restore(without_prefix("schedule", one.state))
                 self._map.restore_of_all(without_prefix("map", one.state), nodes)
+                self._guard.restore_of_all(without_prefix("guard", one.state))
             elif one.node < len(self._map.nodes):
                 self._map.restore(one.node, without_prefix("map", one.state))
                 self._guard.restore(one.node, without_prefix("guard", one.state))
@@ -100,7 +101,7 @@ class Learner:
     def _kept(self, node: int | None) -> State:
         if node is None:
             parts = prefixed("schedule", self._schedule.kept()) | prefixed("map", self._map.kept_of_all())
-            return {"newest_ns": self._newest_ns, **parts}
+            return {"newest_ns": self._newest_ns, **parts, **prefixed("guard", self._guard.kept_of_all())}
         if node >= len(self._map.nodes):  # no scan of it has been learnt
             return {}
         return prefixed("map", self._map.kept(node)) | prefixed("guard", self._guard.kept(node))
