@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 
-from timemap_cli.changes.difference import Kind
 from timemap_cli.changes.ghosts import without_ghosts
 from timemap_cli.changes.tracker import Tracker
 from timemap_cli.logs.coming import Coming, EndOfRecording, Resumed, ScanCounts, Waiting
@@ -189,14 +188,8 @@ class Writing:
 
     def _standing(self) -> dict[str, dict[int, Estimate]]:
         """The newest estimates by level and node, without what other nodes have seen gone since."""
-        gone = [event for event in self.tracker.events if event.kind is Kind.VANISHED and event.holds]
         return {
-            level: without_ghosts(
-                self.nodes,
-                latest,
-                [event for event in gone if event.adopted[level] is not None],
-                self.tracker.radius,
-            )
+            level: without_ghosts(self.nodes, latest, self.tracker.left(level), self.tracker.radius)
             for level, latest in self._latest.items()
         }
 

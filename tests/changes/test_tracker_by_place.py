@@ -66,6 +66,14 @@ def test_a_thing_carried_to_another_room_is_one_event_that_moved(flat):
     assert set(event.nodes) == {2, 3}
 
 
+def test_the_place_that_a_moved_thing_left_is_told_for_the_maps(flat):
+    flat.round([THERE], [0, 1], long=[HERE])
+    flat.round([THERE], [2, 3], long=[HERE])
+    (left,) = flat.tracker.left(flat.tracker.levels[0])
+    assert left.points.mean(axis=0) == pytest.approx((-3.5, 0.3), abs=0.3)
+    assert flat.tracker.left(flat.tracker.levels[-1]) == []  # the slowest level has not adopted it
+
+
 def test_it_is_one_event_in_whichever_room_the_robot_looks_first(flat):
     flat.round([THERE], [2, 3], long=[HERE])
     assert flat.kinds == [Kind.APPEARED]

@@ -10,6 +10,7 @@ came back after it had been undone; until then it is only suspected, and forgott
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from timemap_cli.changes.compare import news
 from timemap_cli.changes.difference import Change, Kind
@@ -45,6 +46,13 @@ class Tracker:
         """All events reported so far, in the order in which they were."""
         found = [track.event() for track in self._tracks if track.id is not None]
         return tuple(sorted(found, key=lambda event: event.id))
+
+    def left(self, level: str) -> list[Event]:
+        """Events that hold and that a level has adopted, with the outline of what stood where nothing stands now."""
+        adopted = [t for t in self._tracks if t.id is not None and t.is_open and t.adopted[level] is not None]
+        gone = [track.event() for track in adopted if track.kind is Kind.VANISHED]
+        moved = [(track.event(), track.points_before) for track in adopted if track.kind is Kind.MOVED]
+        return gone + [replace(event, points=points) for event, points in moved if points is not None]
 
     def kept(self) -> State:
         """What is watched, for `restore`; what the slowest level held before goes with the nodes."""
